@@ -1,0 +1,1 @@
+"""The mathematics of optplan: one optimisation model a module, numbers in and out."""
