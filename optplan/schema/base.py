@@ -1,0 +1,95 @@
+"""What all models share: strictness, units, error messages, versions."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, WithJsonSchema
+
+from optplan.domain import units
+from optplan.domain.errors import InputError
+
+VERSION = "1.0"
+"""Version of the file formats. A newer minor version adds what an older program may not leave out; see `check_version`."""
+
+
+class Model(BaseModel):
+    """A public record: unknown keys, NaN and infinity are errors."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, frozen=True)
+
+
+def _unit(convert: Callable[[Any], float], example: str) -> Any:
+    def validate(value: Any) -> float:
+        try:
+            return convert(value)
+        except InputError as error:
+            raise ValueError(error.problem) from None
+
+    described = {"anyOf": [{"type": "number"}, {"type": "string"}], "examples": [example]}
+    return Annotated[float, BeforeValidator(validate), WithJsonSchema(described)]
+
+
+def _of(table: dict[str, float], default: str, example: str) -> Any:
+    return _unit(lambda value: units.quantity(value, table, default), example)
+
+
+Length = _of(units.LENGTH, "m", "25 mm")
+Speed = _of(units.SPEED, "m/s", "40 cm/s")
+Acceleration = _of(units.ACCELERATION, "m/s^2", "1 m/s^2")
+Rate = _of(units.RATE, "rad/s", "90 deg/s")
+RateChange = _of(units.RATE_CHANGE, "rad/s^2", "40 rad/s^2")
+Sharpness = _of(units.SHARPNESS, "1/m^2", "4 1/m^2")
+Angle = _of(units.ANGLE, "deg", "30 deg")
+Duration = _of(units.TIME, "s", "2 min")
+
+Point = tuple[float, float]
+Point3 = tuple[float, float, float]
+
+
+def fault(error: ValidationError, where: str) -> InputError:
+    """All of pydantic's findings as one InputError."""
+    lines = []
+    for item in error.errors(include_url=False)[:12]:
+        place = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in item["loc"]).lstrip(".")
+        given = "" if isinstance(item["input"], dict | list) else f" (given: {str(item['input'])[:60]!r})"
+        message = item["msg"].removeprefix("Value error, ")
+        lines.append(f"{place}: {message}{given}" if place else f"{message}{given}")
+    more = error.error_count() - len(lines)
+    if more > 0:
+        lines.append(f"and {more} more")
+    return InputError("; ".join(lines), where)
+
+
+def check_version(data: Any, where: str) -> None:
+    """Raise InputError unless this program can read a file of the version that `data` states."""
+    if not isinstance(data, dict):
+        raise InputError(f"holds a {type(data).__name__}; expected an object with named parts", where)
+    version = data.get("version")
+    parts = str(version).split(".")
+    if version is None or len(parts) != 2 or not all(part.isdigit() for part in parts):
+        raise InputError(f"version is {version!r}; expected {VERSION!r} or an older minor version of it", where)
+    major, minor = map(int, parts)
+    own_major, own_minor = map(int, VERSION.split("."))
+    if major != own_major or minor > own_minor:
+        raise InputError(
+            f"was written for format version {version}; this optplan reads {own_major}.0 to {VERSION}. "
+            f"{'Update optplan to read it.' if (major, minor) > (own_major, own_minor) else 'Write it again.'}",
+            where,
+        )
+
+
+def parse_json(text: str | bytes, where: str) -> Any:
+    """JSON with NaN and infinity refused. Raises InputError with line and column."""
+
+    def refuse(name: str) -> Any:
+        raise InputError(f"holds {name}; expected finite numbers", where)
+
+    try:
+        return json.loads(text, parse_constant=refuse)
+    except json.JSONDecodeError as error:
+        raise InputError(f"is not JSON: {error.msg} at line {error.lineno}, column {error.colno}", where) from None
+    except (UnicodeDecodeError, RecursionError) as error:
+        raise InputError(f"is not JSON: {error}", where) from None
