@@ -12,7 +12,7 @@ from optplan.domain import units
 from optplan.domain.errors import InputError
 
 VERSION = "1.0"
-"""Version of the file formats. A newer minor version adds what an older program may not leave out; see `check_version`."""
+"""Version of the file formats. A newer minor version adds what an older program may not leave out."""
 
 
 class Model(BaseModel):

@@ -139,7 +139,7 @@ def robot_model(robot: Robot) -> RobotModel:
         for item, limit in zip(tool.settings, limits, strict=True)
     )
     mobility = robot.mobility
-    kinds = {DiffDrive: DiffDriveModel, Gantry: GantryModel, Boom: BoomModel, Arm: ArmModel}
+    kinds: dict[type, type[Model]] = {DiffDrive: DiffDriveModel, Gantry: GantryModel, Boom: BoomModel, Arm: ArmModel}
     model = kinds[type(mobility)]
     parts = {name: getattr(mobility, name) for name in model.model_fields if name != "kind"}
     if parts.get("sharpness") == float("inf"):
@@ -156,7 +156,7 @@ def robot_model(robot: Robot) -> RobotModel:
             green_is_start=tool.green_is_start,
             fill=tool.settings[tool.fill].name,
         ),
-        mobility=model(**parts),
+        mobility=model.model_validate(parts),
         canvas=None if canvas is None else CanvasModel(width=canvas.width, height=canvas.height, margin=canvas.margin),
         sources=dict(robot.sources),
     )
