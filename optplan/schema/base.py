@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, WithJsonSchema
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationError
+from pydantic_core import CoreSchema, core_schema
 
 from optplan.domain import units
 from optplan.domain.errors import InputError
@@ -21,29 +22,45 @@ class Model(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False, frozen=True)
 
 
-def _unit(convert: Callable[[Any], float], example: str) -> Any:
-    def validate(value: Any) -> float:
-        try:
-            return convert(value)
-        except InputError as error:
-            raise ValueError(error.problem) from None
+@dataclass(frozen=True, eq=False)
+class _Unit:
+    """Annotation of a float field: a number, or text with a unit, converted to SI at the door.
 
-    described = {"anyOf": [{"type": "number"}, {"type": "string"}], "examples": [example]}
-    return Annotated[float, BeforeValidator(validate), WithJsonSchema(described)]
+    Where a bare number would not mean the SI unit (degrees), JSON is written with the unit.
+    """
+
+    table: dict[str, float]
+    default: str
+    example: str
+    written: str = ""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        def convert(value: Any) -> float:
+            try:
+                return units.quantity(value, self.table, self.default)
+            except InputError as error:
+                raise ValueError(error.problem) from None
+
+        def write(value: float) -> str:
+            return f"{value!r} {self.written}"
+
+        writer = core_schema.plain_serializer_function_ser_schema(write, when_used="json-unless-none")
+        return core_schema.no_info_before_validator_function(
+            convert, handler(source), serialization=writer if self.written else None
+        )
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"type": "number"}, {"type": "string"}], "examples": [self.example]}
 
 
-def _of(table: dict[str, float], default: str, example: str) -> Any:
-    return _unit(lambda value: units.quantity(value, table, default), example)
-
-
-Length = _of(units.LENGTH, "m", "25 mm")
-Speed = _of(units.SPEED, "m/s", "40 cm/s")
-Acceleration = _of(units.ACCELERATION, "m/s^2", "1 m/s^2")
-Rate = _of(units.RATE, "rad/s", "90 deg/s")
-RateChange = _of(units.RATE_CHANGE, "rad/s^2", "40 rad/s^2")
-Sharpness = _of(units.SHARPNESS, "1/m^2", "4 1/m^2")
-Angle = _of(units.ANGLE, "deg", "30 deg")
-Duration = _of(units.TIME, "s", "2 min")
+Length = Annotated[float, _Unit(units.LENGTH, "m", "25 mm")]
+Speed = Annotated[float, _Unit(units.SPEED, "m/s", "40 cm/s")]
+Acceleration = Annotated[float, _Unit(units.ACCELERATION, "m/s^2", "1 m/s^2")]
+Rate = Annotated[float, _Unit(units.RATE, "rad/s", "90 deg/s")]
+RateChange = Annotated[float, _Unit(units.RATE_CHANGE, "rad/s^2", "40 rad/s^2")]
+Sharpness = Annotated[float, _Unit(units.SHARPNESS, "1/m^2", "4 1/m^2")]
+Angle = Annotated[float, _Unit(units.ANGLE, "deg", "30 deg", written="rad")]
+Duration = Annotated[float, _Unit(units.TIME, "s", "2 min")]
 
 Point = tuple[float, float]
 Point3 = tuple[float, float, float]

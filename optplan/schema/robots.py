@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import fields
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from optplan.domain.errors import InputError, located
-from optplan.domain.robot import Arm, Boom, Canvas, DiffDrive, Gantry, Robot, Tool, ToolSetting
+from optplan.domain.robot import Arm, Boom, Canvas, DiffDrive, Gantry, Mobility, Robot, Tool, ToolSetting
 from optplan.schema.base import VERSION, Acceleration, Duration, Length, Model, Rate, RateChange, Sharpness, Speed
 
 
@@ -138,12 +140,6 @@ def robot_model(robot: Robot) -> RobotModel:
         ToolSettingModel(name=item.name, width=item.width, code=item.code, up_to=limit)
         for item, limit in zip(tool.settings, limits, strict=True)
     )
-    mobility = robot.mobility
-    kinds: dict[type, type[Model]] = {DiffDrive: DiffDriveModel, Gantry: GantryModel, Boom: BoomModel, Arm: ArmModel}
-    model = kinds[type(mobility)]
-    parts = {name: getattr(mobility, name) for name in model.model_fields if name != "kind"}
-    if parts.get("sharpness") == float("inf"):
-        parts["sharpness"] = None
     canvas = robot.canvas
     return RobotModel(
         name=robot.name,
@@ -156,7 +152,21 @@ def robot_model(robot: Robot) -> RobotModel:
             green_is_start=tool.green_is_start,
             fill=tool.settings[tool.fill].name,
         ),
-        mobility=model.model_validate(parts),
+        mobility=_mobility_model(robot.mobility),
         canvas=None if canvas is None else CanvasModel(width=canvas.width, height=canvas.height, margin=canvas.margin),
         sources=dict(robot.sources),
     )
+
+
+def _mobility_model(mobility: Mobility) -> DiffDriveModel | GantryModel | BoomModel | ArmModel:
+    parts = {field.name: getattr(mobility, field.name) for field in fields(mobility)}
+    match mobility:
+        case DiffDrive():
+            chosen = None if math.isinf(mobility.sharpness) else mobility.sharpness
+            return DiffDriveModel.model_validate({**parts, "sharpness": chosen})
+        case Gantry():
+            return GantryModel.model_validate(parts)
+        case Boom():
+            return BoomModel.model_validate(parts)
+        case Arm():
+            return ArmModel.model_validate(parts)

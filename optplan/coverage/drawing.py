@@ -1,0 +1,190 @@
+"""A drawing's strokes: outlines as they are drawn, areas as parallel lines."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from optplan.coverage.corners import split_at_corners
+from optplan.coverage.placing import Line, canvas_of, placed, placement
+from optplan.coverage.zigzag import zigzag
+from optplan.domain.arrays import FloatArray
+from optplan.domain.errors import InputError, located
+from optplan.domain.job import Drawing, Note
+from optplan.domain.options import CoverOptions, Options, PageOptions
+from optplan.domain.path import RAISED
+from optplan.domain.progress import Progress, ProgressCallback
+from optplan.domain.result import Area, Cover
+from optplan.domain.robot import Robot, Tool
+from optplan.domain.stroke import Stroke
+from optplan.geometry.regions import region
+from optplan.jobs.syntax import Marked, interpret
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+LOST = 0.02
+"""Share of an area that may stay untouched without a notice: the corners of any parallel fill."""
+MAX_STROKES = 100_000
+"""Most strokes that one plan may have."""
+
+
+def tolerance_of(page: PageOptions, tool: Tool) -> float:
+    """Greatest distance between a drawn curve and its polyline, m: as asked, or a twentieth of the narrowest mark."""
+    return page.tolerance or min(setting.width for setting in tool.settings[1:]) / 20
+
+
+def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: ProgressCallback) -> Cover:
+    """Strokes, areas, start point and precedence of a drawing on its canvas. Raises InputError; see `cover`."""
+    job = _with_settings(job, options.cover)
+    marked, notices = interpret(job, robot.tool)
+    if all(mark.start for mark in marked):
+        raise InputError(
+            "nothing in this drawing is to be drawn: every element is white, without style, or a start", job.name
+        )
+    canvas = canvas_of(options.page, robot)
+    with located(job.name):
+        where = placement([mark.element for mark in marked], canvas)
+    tolerance = tolerance_of(options.page, robot.tool)
+
+    strokes: list[Stroke] = []
+    areas: list[Area] = []
+    notes = list(notices)
+    start: tuple[float, float] | None = None
+    for done, mark in enumerate(marked):
+        progress(Progress("cover", done / len(marked), message=mark.element.id))
+        lines = placed(mark.element, where, tolerance)
+        if not lines:
+            notes.append(Note("ignored", mark.element.id, "has no extent on the canvas"))
+        elif mark.start:
+            x, y = lines[-1].points[0 if lines[-1].closed else -1]
+            start = (float(x), float(y))
+        else:
+            strokes += _outlines(mark, lines)
+            if mark.fill is not None:
+                new, made = _filled(mark, mark.fill, lines, robot.tool, options.cover, notes)
+                strokes += new
+                areas += made
+        if len(strokes) > MAX_STROKES:
+            raise InputError(f"there are more than {MAX_STROKES} strokes; widen the fill spacing or split it", job.name)
+    strokes = split_at_corners(strokes, robot, options, tolerance)
+    if not strokes:
+        raise InputError("nothing in this drawing is to be drawn on this canvas", job.name)
+    travels = [k for k, stroke in enumerate(strokes) if stroke.tool == RAISED]
+    chain = tuple(pairwise(travels))
+    progress(Progress("cover", 1.0, message=f"{len(strokes)} strokes"))
+    return Cover(tuple(strokes), tuple(areas), chain, start, canvas, tuple(notes))
+
+
+def _with_settings(job: Drawing, options: CoverOptions) -> Drawing:
+    for id, settings in options.elements:
+        job = job.with_element(id, fill_settings=settings)
+    return job
+
+
+def _outlines(mark: Marked, lines: list[Line]) -> list[Stroke]:
+    if mark.outline is None:
+        return []
+    names = [mark.element.id] if len(lines) == 1 else [f"{mark.element.id}.{k}" for k in range(1, len(lines) + 1)]
+    return [
+        Stroke(
+            name,
+            line.points,
+            tool=mark.outline,
+            closed=line.closed and mark.outline != RAISED,
+            directed=mark.outline == RAISED,
+            entry=_entry(mark, line, name),
+            element=mark.element.id,
+            layer=mark.layer,
+        )
+        for name, line in zip(names, lines, strict=True)
+    ]
+
+
+def _entry(mark: Marked, line: Line, name: str) -> int | None:
+    entry: int | None = mark.element.entry
+    if entry is None:
+        return None
+    allowed = range(len(line.points)) if line.closed else (0, len(line.points) - 1)
+    if entry not in allowed:
+        raise InputError(f"must be entered at vertex {entry}; expected one of {allowed}", name)
+    return entry
+
+
+def _filled(
+    mark: Marked, tool: int, lines: list[Line], robot_tool: Tool, options: CoverOptions, notes: list[Note]
+) -> tuple[list[Stroke], list[Area]]:
+    element = mark.element
+    polygons, crossed = region([line.points for line in lines], element.fill_rule)
+    if crossed:
+        notes.append(Note("changed", element.id, f"crosses itself; filled by the {element.fill_rule.value} rule"))
+    if not polygons:
+        notes.append(Note("ignored", element.id, "its fill encloses no area"))
+    width = robot_tool.settings[tool].width
+    own = element.fill_settings
+    asked = _Asked(
+        options.direction if own.direction is None else own.direction,
+        own.spacing or options.spacing or width,
+        next((inset for inset in (own.inset, options.inset) if inset is not None), width / 2),
+    )
+    strokes: list[Stroke] = []
+    areas: list[Area] = []
+    for polygon in polygons:
+        with located(element.id):
+            new, kept = _fill_polygon(polygon, asked, options.boundary)
+        if kept < asked.inset:
+            text = f"too narrow for lines {asked.inset:.3g} m inside its outline; they keep {kept:.3g} m"
+            notes.append(Note("changed", element.id, text))
+        rings = [polygon.exterior, *polygon.interiors]
+        areas.append(Area(element.id, tuple(np.array(ring.coords)[:-1] for ring in rings), tool))
+        strokes += new
+    if strokes:
+        lost = _lost(areas, strokes, width)
+        if lost > LOST:
+            text = f"{100 * lost:.1f} % of its area stays untouched: corners and places too narrow for the tool"
+            notes.append(Note("notice", element.id, text))
+    named = [
+        replace(stroke, id=f"{element.id}/fill.{k}", tool=tool, element=element.id, layer=mark.layer)
+        for k, stroke in enumerate(strokes, start=1)
+    ]
+    return named, areas
+
+
+class _Asked(NamedTuple):
+    """Fill settings with every choice made: rad, m, m."""
+
+    direction: float
+    spacing: float
+    inset: float
+
+
+def _fill_polygon(polygon: Polygon, asked: _Asked, boundary: bool) -> tuple[list[Stroke], float]:
+    import shapely
+
+    fill = zigzag(polygon, asked.direction, asked.spacing, asked.inset)
+    strokes = [Stroke("", _apart(points)) for points in fill.strokes]
+    if boundary:
+        for part in shapely.get_parts(polygon.buffer(-fill.inset, join_style="mitre")):
+            for ring in (part.exterior, *part.interiors):
+                strokes.append(Stroke("", _apart(np.array(ring.coords)[:-1]), closed=True))
+    return strokes, fill.inset
+
+
+def _apart(points: FloatArray) -> FloatArray:
+    keep = np.concatenate([[True], np.any(np.diff(points, axis=0) != 0, axis=1)])
+    kept: FloatArray = points[keep]
+    return kept
+
+
+def _lost(areas: list[Area], strokes: list[Stroke], width: float) -> float:
+    """Share of an area that the marks of its fill leave untouched."""
+    import shapely
+
+    wanted = shapely.union_all([shapely.Polygon(area.rings[0], area.rings[1:]) for area in areas])
+    lines = [shapely.LineString(stroke.closed_points) for stroke in strokes]
+    done = shapely.union_all(shapely.buffer(lines, width / 2, quad_segs=4))
+    return float(shapely.difference(wanted, done).area / wanted.area) if wanted.area > 0 else math.nan
