@@ -55,9 +55,7 @@ class OrderModel(Model):
 class ConnectModel(Model):
     """How strokes are driven and joined."""
 
-    corner: Angle = Field(
-        math.radians(30), description="a sharper vertex is a corner; a bare number is degrees"
-    )
+    corner: Angle = Field(math.radians(30), description="a sharper vertex is a corner; a bare number is degrees")
 
 
 class TimeModel(Model):
