@@ -1,0 +1,1 @@
+"""Curves, paths and polygons; knows no job and no robot."""
