@@ -1,1 +1,1 @@
-"""Readers and writers of jobs."""
+"""Readers and writers of jobs: files in, the words of `optplan.domain.job` out."""
