@@ -22,7 +22,7 @@ from optplan.domain.result import Area, Cover
 from optplan.domain.robot import Robot, Tool
 from optplan.domain.stroke import Stroke
 from optplan.geometry.regions import region
-from optplan.jobs.syntax import Marked, interpret
+from optplan.jobs.syntax import Mark, interpret
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -41,34 +41,30 @@ def tolerance_of(page: PageOptions, tool: Tool) -> float:
 def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: ProgressCallback) -> Cover:
     """Strokes, areas, start point and precedence of a drawing on its canvas. Raises InputError; see `cover`."""
     job = _with_settings(job, options.cover)
-    marked, notices = interpret(job, robot.tool)
-    if all(mark.start for mark in marked):
-        raise InputError(
-            "nothing in this drawing is to be drawn: every element is white, without style, or a start", job.name
-        )
+    read = interpret(job, robot.tool)
+    drawn = [mark for mark in read.marks if mark.drawn]
+    if not drawn:
+        reason = "every element is white, without style, or a start point"
+        raise InputError(f"nothing in this drawing is to be drawn: {reason}", job.name)
     canvas = canvas_of(options.page, robot)
     with located(job.name):
-        where = placement([mark.element for mark in marked], canvas)
+        where = placement([mark.element for mark in read.marks if mark.drawn or mark.start], canvas)
     tolerance = tolerance_of(options.page, robot.tool)
 
     strokes: list[Stroke] = []
     areas: list[Area] = []
-    notes = list(notices)
-    start: tuple[float, float] | None = None
-    for done, mark in enumerate(marked):
-        progress(Progress("cover", done / len(marked), message=mark.element.id))
+    notes = list(read.notes)
+    for done, mark in enumerate(drawn):
+        progress(Progress("cover", done / len(drawn), message=mark.element.id))
         lines = placed(mark.element, where, tolerance)
         if not lines:
             notes.append(Note("ignored", mark.element.id, "has no extent on the canvas"))
-        elif mark.start:
-            x, y = lines[-1].points[0 if lines[-1].closed else -1]
-            start = (float(x), float(y))
-        else:
-            strokes += _outlines(mark, lines)
-            if mark.fill is not None:
-                new, made = _filled(mark, mark.fill, lines, robot.tool, options.cover, notes)
-                strokes += new
-                areas += made
+            continue
+        strokes += _outlines(mark, lines)
+        if mark.fill:
+            new, made = _filled(mark, lines, robot.tool, options.cover, notes)
+            strokes += new
+            areas += made
         if len(strokes) > MAX_STROKES:
             raise InputError(f"there are more than {MAX_STROKES} strokes; widen the fill spacing or split it", job.name)
     strokes = split_at_corners(strokes, robot, options, tolerance)
@@ -77,7 +73,9 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
     travels = [k for k, stroke in enumerate(strokes) if stroke.tool == RAISED]
     chain = tuple(pairwise(travels))
     progress(Progress("cover", 1.0, message=f"{len(strokes)} strokes"))
-    return Cover(tuple(strokes), tuple(areas), chain, start, canvas, tuple(notes))
+    start = None if read.start is None else where.apply(read.start[None, :])[0]
+    begin = None if start is None else (float(start[0]), float(start[1]))
+    return Cover(tuple(strokes), tuple(areas), chain, begin, canvas, tuple(notes))
 
 
 def _with_settings(job: Drawing, options: CoverOptions) -> Drawing:
@@ -86,7 +84,7 @@ def _with_settings(job: Drawing, options: CoverOptions) -> Drawing:
     return job
 
 
-def _outlines(mark: Marked, lines: list[Line]) -> list[Stroke]:
+def _outlines(mark: Mark, lines: list[Line]) -> list[Stroke]:
     if mark.outline is None:
         return []
     names = [mark.element.id] if len(lines) == 1 else [f"{mark.element.id}.{k}" for k in range(1, len(lines) + 1)]
@@ -105,7 +103,7 @@ def _outlines(mark: Marked, lines: list[Line]) -> list[Stroke]:
     ]
 
 
-def _entry(mark: Marked, line: Line, name: str) -> int | None:
+def _entry(mark: Mark, line: Line, name: str) -> int | None:
     entry: int | None = mark.element.entry
     if entry is None:
         return None
@@ -116,7 +114,7 @@ def _entry(mark: Marked, line: Line, name: str) -> int | None:
 
 
 def _filled(
-    mark: Marked, tool: int, lines: list[Line], robot_tool: Tool, options: CoverOptions, notes: list[Note]
+    mark: Mark, lines: list[Line], tool: Tool, options: CoverOptions, notes: list[Note]
 ) -> tuple[list[Stroke], list[Area]]:
     element = mark.element
     polygons, crossed = region([line.points for line in lines], element.fill_rule)
@@ -124,7 +122,7 @@ def _filled(
         notes.append(Note("changed", element.id, f"crosses itself; filled by the {element.fill_rule.value} rule"))
     if not polygons:
         notes.append(Note("ignored", element.id, "its fill encloses no area"))
-    width = robot_tool.settings[tool].width
+    width = tool.settings[tool.fill].width
     own = element.fill_settings
     asked = _Asked(
         options.direction if own.direction is None else own.direction,
@@ -140,7 +138,7 @@ def _filled(
             text = f"too narrow for lines {asked.inset:.3g} m inside its outline; they keep {kept:.3g} m"
             notes.append(Note("changed", element.id, text))
         rings = [polygon.exterior, *polygon.interiors]
-        areas.append(Area(element.id, tuple(np.array(ring.coords)[:-1] for ring in rings), tool))
+        areas.append(Area(element.id, tuple(np.array(ring.coords)[:-1] for ring in rings), tool.fill))
         strokes += new
     if strokes:
         lost = _lost(areas, strokes, width)
@@ -148,7 +146,7 @@ def _filled(
             text = f"{100 * lost:.1f} % of its area stays untouched: corners and places too narrow for the tool"
             notes.append(Note("notice", element.id, text))
     named = [
-        replace(stroke, id=f"{element.id}/fill.{k}", tool=tool, element=element.id, layer=mark.layer)
+        replace(stroke, id=f"{element.id}/fill.{k}", tool=tool.fill, element=element.id, layer=mark.layer)
         for k, stroke in enumerate(strokes, start=1)
     ]
     return named, areas

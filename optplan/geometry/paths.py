@@ -26,6 +26,8 @@ class States(NamedTuple):
     """(k,) 1/m"""
     piece: IntArray
     """(k,) row of the path"""
+    distance: FloatArray
+    """(k,) m from the beginning of that row"""
 
 
 def displacement(
@@ -61,6 +63,7 @@ def along(path: Path, piece: IntArray, distance: FloatArray) -> States:
         heading + distance * (curvature + distance * sharpness / 2),
         curvature + distance * sharpness,
         piece,
+        distance,
     )
 
 
@@ -76,7 +79,7 @@ def sampled(path: Path, spacing: float) -> States:
     Each piece is divided evenly; a stop gives one state before its turn. The last state is the end of the path.
     """
     if len(path) == 0:
-        return States(np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
+        return States(np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64), np.zeros(0))
     parts = np.maximum(1, np.ceil(path.length / spacing - 1e-9)).astype(np.int64)
     piece = np.repeat(np.arange(len(path)), parts)
     within = np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)

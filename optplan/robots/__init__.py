@@ -10,7 +10,7 @@ from optplan.domain.robot import Robot
 _PRESETS = Path(__file__).parent
 
 
-def preset_names() -> tuple[str, ...]:
+def robot_names() -> tuple[str, ...]:
     """Names of the presets, sorted."""
     return tuple(sorted(file.stem for file in _PRESETS.glob("*.toml")))
 
@@ -28,11 +28,11 @@ def load_robot(name: str | Path | Robot) -> Robot:
     """
     if isinstance(name, Robot):
         return name
-    if str(name) in preset_names():
+    if str(name) in robot_names():
         return _read(_PRESETS / f"{name}.toml")
     file = Path(name)
     if file.suffix not in (".toml", ".json"):
-        known = ", ".join(preset_names())
+        known = ", ".join(robot_names())
         raise InputError(f"there is no robot {str(name)!r}; expected one of {known}, or a .toml or .json file")
     return _read(file)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path as FilePath
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field as Entry
@@ -67,8 +67,8 @@ class OrderingModel(Model):
     """The solver's answer. `cost` is absent when none was found, `bound` when nothing was proved."""
 
     nodes: list[int]
-    cost: float | None
-    bound: float | None
+    cost: float | None = None
+    bound: float | None = None
     status: Status
     stopped: StopReason
     solver: str
@@ -120,7 +120,7 @@ class CheckModel(Model):
 
     name: str
     verdict: Verdict
-    value: float | None
+    value: float | None = None
     limit: float | None = None
     unit: str = ""
     place: Point | None = None
@@ -215,7 +215,7 @@ def plan_from(model: PlanModel) -> Plan:
     with located("ordering"):
         ordering = None if model.ordering is None else _ordering_from(model.ordering)
     with located("visits"):
-        visits = None if model.visits is None else Traversals(**{k: _array(v) for k, v in model.visits})
+        visits = None if model.visits is None else _visits_from(model.visits)
     with located("path"):
         path = None if model.path is None else _path_from(model.path)
     with located("trajectory"):
@@ -342,6 +342,13 @@ def _visits_model(visits: Traversals) -> VisitsModel:
     return VisitsModel.model_validate({name: getattr(visits, name).tolist() for name in VisitsModel.model_fields})
 
 
+def _visits_from(model: VisitsModel) -> Traversals:
+    columns: dict[str, Any] = {name: np.array(value) for name, value in model}
+    for name in ("entry", "exit"):
+        columns[name] = columns[name].reshape(-1, 5)
+    return Traversals(**columns)
+
+
 _OFTEN_ZERO = ("elevation", "curvature", "sharpness", "turn", "dwell")
 
 
@@ -355,7 +362,7 @@ def _path_model(path: Path) -> PathModel:
 def _path_from(model: PathModel) -> Path:
     columns = {name: value for name, value in model if name != "orientation"}
     zero = np.zeros(len(model.length))
-    arrays = {name: zero if value is None else _array(value) for name, value in columns.items()}
+    arrays: dict[str, Any] = {name: zero if value is None else _array(value) for name, value in columns.items()}
     arrays["start"] = arrays["start"].reshape(-1, 3)
     for name in ("tool", "stroke"):
         arrays[name] = arrays[name].astype(np.int64)
