@@ -102,9 +102,9 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
         # pins that stay down while the robot turns sharply would draw a swirl
         sharp = (pieces.length == 0) & (np.abs(pieces.turn) > options.connect.corner) & turns
         tool = np.where(sharp, RAISED, stroke.tool)
-        rows.add(
-            _without_turns(pieces) if not turns and not stroke.is_stop else pieces, tool, visit.stroke, stroke.dwell
-        )
+        if not (turns or stroke.is_stop):
+            tool, pieces = tool[pieces.length > 0], _without_turns(pieces)
+        rows.add(pieces, tool, visit.stroke, stroke.dwell)
         here = _end(pieces)
     return _path(rows)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -14,7 +13,7 @@ from optplan.coverage.placing import Line, canvas_of, placed, placement
 from optplan.coverage.zigzag import zigzag
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError, located
-from optplan.domain.job import Drawing, Note
+from optplan.domain.job import Drawing, FillSettings, Note
 from optplan.domain.options import CoverOptions, Options, PageOptions
 from optplan.domain.path import RAISED
 from optplan.domain.progress import Progress, ProgressCallback
@@ -27,8 +26,12 @@ from optplan.jobs.syntax import Mark, interpret
 if TYPE_CHECKING:
     from shapely import Polygon
 
-LOST = 0.02
-"""Share of an area that may stay untouched without a notice: the corners of any parallel fill."""
+LOST = 0.05
+"""Share of an area that may stay untouched without a notice: the corners of any fill."""
+REACHED = 0.8
+"""Share of an area that a tool setting has to reach to be the one that fills it."""
+OVERLAPPING = 0.9
+"""Where the inset outline is driven too, lines begin this many tool widths from the border."""
 MAX_STROKES = 100_000
 """Most strokes that one plan may have."""
 
@@ -122,34 +125,54 @@ def _filled(
         notes.append(Note("changed", element.id, f"crosses itself; filled by the {element.fill_rule.value} rule"))
     if not polygons:
         notes.append(Note("ignored", element.id, "its fill encloses no area"))
-    width = tool.settings[tool.fill].width
-    own = element.fill_settings
-    asked = _Asked(
-        options.direction if own.direction is None else own.direction,
-        own.spacing or options.spacing or width,
-        next((inset for inset in (own.inset, options.inset) if inset is not None), width / 2),
-    )
     strokes: list[Stroke] = []
     areas: list[Area] = []
     for polygon in polygons:
+        setting = _fitting(polygon, tool)
+        if setting != tool.fill:
+            text = f"too narrow for {tool.settings[tool.fill].name!r}: filled with {tool.settings[setting].name!r}"
+            notes.append(Note("changed", element.id, text))
+        width = tool.settings[setting].width
+        asked = _asked(element.fill_settings, options, width)
         with located(element.id):
-            new, kept = _fill_polygon(polygon, asked, options.boundary)
+            new, kept = _fill_polygon(polygon, asked, width, options.boundary)
         if kept < asked.inset:
             text = f"too narrow for lines {asked.inset:.3g} m inside its outline; they keep {kept:.3g} m"
             notes.append(Note("changed", element.id, text))
         rings = [polygon.exterior, *polygon.interiors]
-        areas.append(Area(element.id, tuple(np.array(ring.coords)[:-1] for ring in rings), tool.fill))
-        strokes += new
-    if strokes:
-        lost = _lost(areas, strokes, width)
+        area = Area(element.id, tuple(np.array(ring.coords)[:-1] for ring in rings), setting)
+        lost = _lost(area, new, width)
         if lost > LOST:
-            text = f"{100 * lost:.1f} % of its area stays untouched: corners and places too narrow for the tool"
+            text = f"{100 * lost:.0f} % of an area stays untouched: corners and places too narrow for the tool"
             notes.append(Note("notice", element.id, text))
+        areas.append(area)
+        strokes += [replace(stroke, tool=setting) for stroke in new]
     named = [
-        replace(stroke, id=f"{element.id}/fill.{k}", tool=tool.fill, element=element.id, layer=mark.layer)
+        replace(stroke, id=f"{element.id}/fill.{k}", element=element.id, layer=mark.layer)
         for k, stroke in enumerate(strokes, start=1)
     ]
     return named, areas
+
+
+def _fitting(polygon: Polygon, tool: Tool) -> int:
+    """The widest setting, up to the one that fills areas, that reaches most of a polygon."""
+    usual = tool.settings[tool.fill].width
+    narrower = [k for k in range(1, len(tool.settings)) if tool.settings[k].width <= usual]
+    by_width = sorted(narrower, key=lambda k: -tool.settings[k].width)
+    for k in by_width:
+        half = tool.settings[k].width / 2
+        if polygon.buffer(-half, join_style="mitre").buffer(half, join_style="mitre").area >= REACHED * polygon.area:
+            return k
+    return by_width[-1]
+
+
+def _asked(own: FillSettings, options: CoverOptions, width: float) -> _Asked:
+    usual_inset = OVERLAPPING * width if options.boundary else width / 2
+    return _Asked(
+        options.direction if own.direction is None else own.direction,
+        own.spacing or options.spacing or width,
+        next((inset for inset in (own.inset, options.inset) if inset is not None), usual_inset),
+    )
 
 
 class _Asked(NamedTuple):
@@ -160,16 +183,19 @@ class _Asked(NamedTuple):
     inset: float
 
 
-def _fill_polygon(polygon: Polygon, asked: _Asked, boundary: bool) -> tuple[list[Stroke], float]:
+def _fill_polygon(polygon: Polygon, asked: _Asked, width: float, boundary: bool) -> tuple[list[Stroke], float]:
+    """Strokes of one polygon, and the inset that its lines keep, m."""
     import shapely
 
-    fill = zigzag(polygon, asked.direction, asked.spacing, asked.inset)
-    strokes = [Stroke("", _apart(points)) for points in fill.strokes]
+    strokes = []
     if boundary:
-        for part in shapely.get_parts(polygon.buffer(-fill.inset, join_style="mitre")):
+        for part in shapely.get_parts(polygon.buffer(-width / 2, join_style="mitre")):
             for ring in (part.exterior, *part.interiors):
                 strokes.append(Stroke("", _apart(np.array(ring.coords)[:-1]), closed=True))
-    return strokes, fill.inset
+    if strokes and polygon.buffer(-asked.inset, join_style="mitre").is_empty:
+        return strokes, asked.inset  # the ring has done it all
+    fill = zigzag(polygon, asked.direction, asked.spacing, asked.inset)
+    return [*strokes, *(Stroke("", _apart(points)) for points in fill.strokes)], fill.inset
 
 
 def _apart(points: FloatArray) -> FloatArray:
@@ -178,11 +204,11 @@ def _apart(points: FloatArray) -> FloatArray:
     return kept
 
 
-def _lost(areas: list[Area], strokes: list[Stroke], width: float) -> float:
+def _lost(area: Area, strokes: list[Stroke], width: float) -> float:
     """Share of an area that the marks of its fill leave untouched."""
     import shapely
 
-    wanted = shapely.union_all([shapely.Polygon(area.rings[0], area.rings[1:]) for area in areas])
+    wanted = shapely.Polygon(area.rings[0], area.rings[1:])
     lines = [shapely.LineString(stroke.closed_points) for stroke in strokes]
     done = shapely.union_all(shapely.buffer(lines, width / 2, quad_segs=4))
-    return float(shapely.difference(wanted, done).area / wanted.area) if wanted.area > 0 else math.nan
+    return float(shapely.difference(wanted, done).area / wanted.area)

@@ -39,16 +39,16 @@ class CoverOptions:
     Parameters
     ----------
     direction : of the fill lines, rad from the x axis
-    spacing : between fill lines, m; None: the width of the fill tool
-    inset : of the lines from the outline, m; None: half the width of the fill tool
-    boundary : whether the inset outline is driven too
+    spacing : between fill lines, m; None: the width of the tool
+    inset : of the lines from the outline, m; None: what fits the boundary, or half the width of the tool without one
+    boundary : whether the outline, half a tool width inside, is driven too: it gives areas a crisp edge
     elements : settings of single elements, by id; they win over the ones above
     """
 
     direction: float = 0.0
     spacing: float | None = None
     inset: float | None = None
-    boundary: bool = False
+    boundary: bool = True
     elements: tuple[tuple[str, FillSettings], ...] = ()
 
     def __post_init__(self) -> None:

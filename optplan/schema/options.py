@@ -35,8 +35,8 @@ class CoverModel(Model):
 
     direction: Angle = Field(0.0, description="of the fill lines from the x axis; a bare number is degrees")
     spacing: Length | None = Field(None, description="between fill lines; default: the width of the fill tool")
-    inset: Length | None = Field(None, description="of the lines from the outline; default: half that width")
-    boundary: bool = Field(False, description="drive the inset outline too")
+    inset: Length | None = Field(None, description="of the lines from the outline; default: what fits the boundary")
+    boundary: bool = Field(True, description="drive the outline too, half a tool width inside")
     elements: dict[str, FillModel] = Field(default_factory=dict, description="settings of single elements, by id")
 
 
