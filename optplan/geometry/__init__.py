@@ -1,0 +1,1 @@
+"""Clothoids, paths, polygons: geometry that knows no job and no robot."""
