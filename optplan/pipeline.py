@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -126,4 +127,10 @@ def _verify(before: Plan, *_: object) -> Plan:
     return replace(before, report=verify(before))
 
 
-_STEPS = {"cover": _cover, "order": _order, "connect": _connect, "time": _time, "verify": _verify}
+_STEPS: dict[str, Callable[[Plan, ProgressCallback, StopRule | None], Plan]] = {
+    "cover": _cover,
+    "order": _order,
+    "connect": _connect,
+    "time": _time,
+    "verify": _verify,
+}
