@@ -16,48 +16,36 @@ if TYPE_CHECKING:
 CONFIG = Path("optplan.toml")
 """Configuration file that is read from the current folder when there is one."""
 
-_PAGE, _COVER, _ORDER, _PATH = "Page and canvas", "Cover", "Order", "Connect and time"
-
 RobotName = Annotated[str | None, typer.Option("--robot", "-r", help="Preset or robot file (.toml, .json).")]
 ConfigFile = Annotated[Path | None, typer.Option("--config", "-c", help="Settings file; default: ./optplan.toml.")]
 CloseGap = Annotated[
     float | None,
-    typer.Option(help="Close lines whose ends are nearer than this, drawing units.", rich_help_panel=_PAGE),
+    typer.Option(help="Close lines whose ends are nearer than this, drawing units."),
 ]
-CanvasSize = Annotated[
-    str | None, typer.Option("--canvas", help="Canvas, e.g. 20x15 or '5 m x 400 cm'.", rich_help_panel=_PAGE)
-]
-Margin = Annotated[str | None, typer.Option(help="Kept free along the border, e.g. 50cm.", rich_help_panel=_PAGE)]
-Tolerance = Annotated[
-    str | None, typer.Option(help="Greatest distance from a drawn curve, e.g. 2mm.", rich_help_panel=_PAGE)
-]
-Direction = Annotated[str | None, typer.Option(help="Direction of fill lines, degrees.", rich_help_panel=_COVER)]
-Spacing = Annotated[str | None, typer.Option(help="Between fill lines, e.g. 40cm.", rich_help_panel=_COVER)]
-Inset = Annotated[str | None, typer.Option(help="Of fill lines from the outline.", rich_help_panel=_COVER)]
+CanvasSize = Annotated[str | None, typer.Option("--canvas", help="Canvas, e.g. 20x15 or '5 m x 400 cm'.")]
+Margin = Annotated[str | None, typer.Option(help="Kept free along the border, e.g. 50cm.")]
+Tolerance = Annotated[str | None, typer.Option(help="Greatest distance from a drawn curve, e.g. 2mm.")]
+Direction = Annotated[str | None, typer.Option(help="Direction of fill lines, degrees.")]
+Spacing = Annotated[str | None, typer.Option(help="Between fill lines, e.g. 40cm.")]
+Inset = Annotated[str | None, typer.Option(help="Of fill lines from the outline.")]
 Boundary = Annotated[
     bool | None,
-    typer.Option("--boundary/--no-boundary", help="Drive the inset outline of areas too.", rich_help_panel=_COVER),
+    typer.Option("--boundary/--no-boundary", help="Drive the inset outline of areas too."),
 ]
 ElementFill = Annotated[
     list[str] | None,
-    typer.Option(
-        "--fill",
-        help="Fill of one element: 'ID:direction=45,spacing=30cm,inset=10cm'. Repeatable.",
-        rich_help_panel=_COVER,
-    ),
+    typer.Option("--fill", help="Fill of one element: 'ID:direction=45,spacing=30cm,inset=10cm'. Repeatable."),
 ]
-SolverName = Annotated[str | None, typer.Option("--solver", "-s", help="See: optplan solvers.", rich_help_panel=_ORDER)]
-Metric = Annotated[str | None, typer.Option(help="euclid, dubins or auto.", rich_help_panel=_ORDER)]
-TimeLimit = Annotated[str | None, typer.Option(help="For ordering, e.g. 10s or 2min.", rich_help_panel=_ORDER)]
-Iterations = Annotated[
-    int | None, typer.Option(help="Limit of ordering; with a seed repeatable.", rich_help_panel=_ORDER)
-]
-Seed = Annotated[int | None, typer.Option(help="Of everything random.", rich_help_panel=_ORDER)]
-Start = Annotated[str | None, typer.Option(help="Where the robot stands: X,Y in metres.", rich_help_panel=_ORDER)]
-Entries = Annotated[int | None, typer.Option(help="Most entry vertices of a closed stroke.", rich_help_panel=_ORDER)]
-Corner = Annotated[str | None, typer.Option(help="Sharper vertices are corners, degrees.", rich_help_panel=_PATH)]
-WorkSpeed = Annotated[str | None, typer.Option(help="With the tool down, m/s.", rich_help_panel=_PATH)]
-TransitSpeed = Annotated[str | None, typer.Option(help="With the tool up, m/s.", rich_help_panel=_PATH)]
+SolverName = Annotated[str | None, typer.Option("--solver", "-s", help="See: optplan solvers.")]
+Metric = Annotated[str | None, typer.Option(help="euclid, dubins or auto.")]
+TimeLimit = Annotated[str | None, typer.Option(help="For ordering, e.g. 10s or 2min.")]
+Iterations = Annotated[int | None, typer.Option(help="Limit of ordering; with a seed repeatable.")]
+Seed = Annotated[int | None, typer.Option(help="Of everything random.")]
+Start = Annotated[str | None, typer.Option(help="Where the robot stands: X,Y in metres.")]
+Entries = Annotated[int | None, typer.Option(help="Most entry vertices of a closed stroke.")]
+Corner = Annotated[str | None, typer.Option(help="Sharper vertices are corners, degrees.")]
+WorkSpeed = Annotated[str | None, typer.Option(help="With the tool down, m/s.")]
+TransitSpeed = Annotated[str | None, typer.Option(help="With the tool up, m/s.")]
 
 _PLACES = {
     "margin": ("page", "margin"),
