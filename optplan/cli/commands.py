@@ -202,7 +202,11 @@ def _tell(plan: Plan, written: list[str], json: bool) -> None:
     if json:
         output.print_json({"ok": good, **output.plan_facts(plan), "files": written})
     else:
-        output.print_plan(plan)
+        output.print_notes(plan)
+        if plan.ordering is not None:
+            output.print_order(plan.ordering)
+        if plan.report is not None:
+            output.print_report(plan.report)
         verdict = "planned and verified" if good else "NO VALID PLAN" if plan.path is None else "A CHECK FAILED"
         print(f"{verdict}; written:")
         for file in written:
@@ -241,10 +245,30 @@ def _stage(
     if json:
         output.print_json({"ok": good, **output.plan_facts(made), "files": [str(target)]})
     else:
-        output.print_plan(made)
+        _print_stage(made, stage)
         print(f"written: {target}")
     if not good:
         raise typer.Exit(1)
+
+
+def _print_stage(plan: Plan, stage: str) -> None:
+    """What a stage has made, and the report when it got that far."""
+    from optplan.domain.path import RAISED
+
+    if stage == "cover" and plan.cover is not None:
+        output.print_notes(plan)
+        areas = f", {len(plan.cover.areas)} areas" if plan.cover.areas else ""
+        print(f"cover: {len(plan.cover.strokes)} strokes{areas}")
+    if plan.ordering is not None and stage in ("cover", "order"):
+        output.print_order(plan.ordering)
+    if plan.path is not None and plan.report is None:
+        down = float(plan.path.length[plan.path.tool != RAISED].sum())
+        up = float(plan.path.length.sum()) - down
+        print(f"path: {len(plan.path)} pieces, {down:.3f} m tool down, {up:.3f} m tool up")
+    if plan.trajectory is not None and plan.report is None:
+        print(f"time: {plan.trajectory.duration:.1f} s")
+    if plan.report is not None:
+        output.print_report(plan.report)
 
 
 def _load(file: Path, flags: dict[str, Any]) -> Plan:
@@ -394,7 +418,7 @@ def robots(json: Json = False) -> None:
     if json:
         output.print_json([{"name": robot.name, "summary": robot.summary} for robot in known])
     else:
-        output.print_table("", ("robot", ""), [(robot.name, robot.summary) for robot in known])
+        output.print_table(("robot", ""), [(robot.name, robot.summary) for robot in known])
 
 
 @app.command()
@@ -405,7 +429,7 @@ def solvers(json: Json = False) -> None:
     if json:
         output.print_json([{"name": solver.name, "summary": solver.summary} for solver in SOLVERS.values()])
     else:
-        output.print_table("", ("solver", ""), [(solver.name, solver.summary) for solver in SOLVERS.values()])
+        output.print_table(("solver", ""), [(solver.name, solver.summary) for solver in SOLVERS.values()])
 
 
 @app.command()
@@ -417,7 +441,7 @@ def instances(json: Json = False) -> None:
     if json:
         output.print_json([{"name": name, "file": file} for name, file in known])
     else:
-        output.print_table("", ("instance", "file"), known)
+        output.print_table(("instance", "file"), known)
 
 
 @app.command()

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from optplan.domain.job import Note
+    from optplan.domain.ordering import Ordering
     from optplan.domain.report import Report
     from optplan.domain.result import Plan
 
@@ -105,13 +106,13 @@ def cancellable() -> Iterator[list[bool]]:
         signal.signal(signal.SIGINT, before)
 
 
-def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> None:
+def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> None:
     """A plain table; columns whose index is in `right` are right-aligned."""
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=title or None, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
+    table = Table(box=box.SIMPLE_HEAD if any(columns) else None, pad_edge=False, show_header=any(columns))
     for k, name in enumerate(columns):
         table.add_column(name, justify="right" if k in right else "left", overflow="fold")
     for row in rows:
@@ -119,34 +120,44 @@ def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]
     console().print(table)
 
 
-def print_plan(plan: Plan) -> None:
-    """Load report, ordering and the judge's findings."""
+def print_notes(plan: Plan) -> None:
+    """The load report."""
     notes = [*plan.job.notes, *(plan.cover.notes if plan.cover is not None else ())]
     if notes:
-        print_table("What was found in the job", ("", "what", "where"), _note_rows(notes))
-    ordering = plan.ordering
-    if ordering is not None:
-        gap = "no bound" if math.isinf(ordering.gap) else f"gap {100 * ordering.gap:.2f} %"
-        bound = f", bound {ordering.bound:.3f} m" if math.isfinite(ordering.bound) else ""
-        cost = f"{ordering.cost:.3f} m between strokes" if math.isfinite(ordering.cost) else "nothing found"
-        print(f"order: {ordering.status.value} by {ordering.solver}: {cost}{bound}, {gap}; {ordering.stopped.value}")
-        if ordering.message:
-            print(f"       {ordering.message}")
-    if plan.report is not None:
-        print_report(plan.report)
+        print(f"{plan.job.name}: what was ignored, changed or is worth knowing")
+        print_table(("", "", ""), _note_rows(notes))
+
+
+def print_order(ordering: Ordering) -> None:
+    """The solver's answer in one or two lines."""
+    gap = "no bound" if math.isinf(ordering.gap) else f"gap {100 * ordering.gap:.2f} %"
+    bound = f", bound {ordering.bound:.3f} m" if math.isfinite(ordering.bound) else ""
+    cost = f"{ordering.cost:.3f} m between strokes" if math.isfinite(ordering.cost) else "nothing found"
+    print(f"order: {ordering.status.value} by {ordering.solver}: {cost}{bound}, {gap}; {ordering.stopped.value}")
+    if ordering.message:
+        print(f"       {ordering.message}")
+
+
+NAMESPACE = "elements and attributes of the namespace "
 
 
 def _note_rows(notes: Sequence[Note]) -> list[tuple[str, str, str]]:
-    """Notes that say the same become one row."""
+    """Notes that say the same become one row, and so do foreign namespaces."""
     grouped: dict[tuple[str, str], list[Note]] = {}
+    foreign = []
     for note in notes:
-        grouped.setdefault((note.kind, note.text), []).append(note)
+        if note.text.startswith(NAMESPACE):
+            foreign.append(f"{note.text.removeprefix(NAMESPACE).rstrip('#/').rpartition('/')[2]} (x {note.times})")
+        else:
+            grouped.setdefault((note.kind, note.text), []).append(note)
     rows = []
     for (kind, text), same in grouped.items():
         times = sum(note.times for note in same)
         places = [note.place for note in same if note.place]
         where = ", ".join(places[:3]) + (f" and {len(places) - 3} more" if len(places) > 3 else "")
         rows.append((kind, f"{text} (x {times})" if times > 1 else text, where))
+    if foreign:
+        rows.append(("ignored", f"foreign namespaces: {', '.join(foreign)}", ""))
     return rows
 
 
@@ -154,16 +165,23 @@ _MARKS = {"passed": "ok", "failed": "FAILED", "noted": "-"}
 
 
 def print_report(report: Report) -> None:
-    """The judge's findings as two tables."""
+    """The judge's findings: checks with value and limit, reasons where something failed, and figures."""
     rows = []
     for check in report.checks:
         limit = "" if check.limit is None else f"{check.limit:.4g}"
-        place = "" if check.place is None else f"({check.place[0]:.2f}, {check.place[1]:.2f})"
-        value = f"{check.value:.4g} {check.unit}".strip()
-        rows.append((_MARKS[check.verdict.value], check.name, value, limit, place, check.detail))
-    print_table("Checks", ("", "check", "value", "limit", "worst at", ""), rows, right=(2, 3))
+        failed = check.verdict.value == "failed"
+        place = f" at ({check.place[0]:.2f}, {check.place[1]:.2f})" if failed and check.place is not None else ""
+        detail = "" if check.verdict.value == "passed" else check.detail + place
+        rows.append((_MARKS[check.verdict.value], check.name, f"{check.value:.4g}", limit, check.unit, detail))
+    print_table(("", "check", "value", "limit", "unit", ""), rows, right=(2, 3))
     figures = [(name, f"{value:.3f}".rstrip("0").rstrip("."), unit) for name, value, unit in report.figures]
-    print_table("Figures", ("figure", "value", "unit"), figures, right=(1,))
+    half = (len(figures) + 1) // 2
+    left, right = figures[:half], [*figures[half:], ("", "", "")][:half]
+    print_table(
+        ("figure", "value", "unit", "  ", "figure", "value", "unit"),
+        [(*a, "", *b) for a, b in zip(left, right, strict=True)],
+        right=(1, 5),
+    )
 
 
 def plan_facts(plan: Plan) -> dict[str, Any]:
