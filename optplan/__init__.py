@@ -21,6 +21,7 @@ _HOMES = {
     "load_robot": "optplan.robots",
     "robot_names": "optplan.robots",
     "cover": "optplan.coverage",
+    "containment": "optplan.coverage.nesting",
     "traversals": "optplan.problem",
     "ordering_problem": "optplan.problem",
     "solve": "optplan.ordering",
@@ -56,6 +57,7 @@ _HOMES = {
 if TYPE_CHECKING:
     from optplan.connectors.driving import connect as connect
     from optplan.coverage import cover as cover
+    from optplan.coverage.nesting import containment as containment
     from optplan.domain.errors import InputError as InputError
     from optplan.domain.errors import OptplanError as OptplanError
     from optplan.domain.errors import SolverError as SolverError
