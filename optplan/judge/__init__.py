@@ -34,7 +34,7 @@ def verify(plan: Plan) -> Report:
         raise InputError("the plan has no path yet; run connect first")
     path, robot, options, cover = plan.path, plan.robot, plan.options, plan.cover
     limit = deviation_limit(robot, options)
-    samples = integrate(path, limit / 20)
+    samples = integrate(path, limit / 100)
     profile = None if plan.trajectory is None else speeds(path, plan.trajectory)
 
     steps, orders = _continuity.curvature_steps(path, samples, profile)

@@ -72,7 +72,7 @@ def coverage(
 
     # what is missed and what is too much follow from three areas: overlaying wanted and done is slow, for they nearly
     # coincide, and twice as slow for two differences
-    wanted, both = asked_all, asked_all if done is asked_all else _union(shapely, [asked_all, done])
+    wanted, both = asked_all, asked_all if done is asked_all else _overlay(shapely, shapely.union, asked_all, done)
     area_check = noted("area coverage", 1.0, "", "There are no areas to fill.")
     if cover.areas:
         wanted, both = _union(shapely, [wanted, areas]), _union(shapely, [both, areas])
