@@ -34,7 +34,7 @@ def verify(plan: Plan) -> Report:
         raise InputError("the plan has no path yet; run connect first")
     path, robot, options, cover = plan.path, plan.robot, plan.options, plan.cover
     limit = deviation_limit(robot, options)
-    samples = integrate(path, limit / 20)
+    samples = integrate(path, limit / 100)
     profile = None if plan.trajectory is None else speeds(path, plan.trajectory)
 
     steps, orders = _continuity.curvature_steps(path, samples, profile)
@@ -46,10 +46,12 @@ def verify(plan: Plan) -> Report:
     ]
     figures = [*_lengths(path), *orders]
     areas: list[tuple[str, float, str]] = []
+    exact = np.zeros(0, dtype=bool)
     if cover is None:
         checks += unchecked(_COVER_CHECKS, "the plan has no strokes")
     else:
-        checks += [*_strokes.strokes(path, samples, cover, limit), _strokes.precedence(path, cover)]
+        done, deviation, exact = _strokes.strokes(path, samples, cover, limit)
+        checks += [done, deviation, _strokes.precedence(path, cover)]
     if plan.visits is None:
         checks += unchecked(["visits"], "the plan does not say which ways of driving were chosen")
     else:
@@ -59,7 +61,7 @@ def verify(plan: Plan) -> Report:
         checks += unchecked(["canvas", "margin", *_coverage.NAMES], "the plan has no strokes")
     else:
         checks += _strokes.canvas(path, samples, cover)
-        covered, areas = _coverage.coverage(path, samples, cover, robot, limit)
+        covered, areas = _coverage.coverage(path, samples, cover, robot, limit, exact)
         checks += covered
     if plan.trajectory is None or profile is None:
         checks += unchecked(_motion.NAMES, "the plan has no speeds")

@@ -49,7 +49,8 @@ class Samples:
 
 def largest_curvature(path: Path) -> FloatArray:
     """(n,) largest |kappa| on each piece, 1/m: kappa is linear along a piece, so it is that of an end."""
-    return np.maximum(np.abs(path.curvature), np.abs(path.curvature + path.sharpness * path.length))
+    with np.errstate(over="ignore"):  # infinite is as good as enormous here
+        return np.maximum(np.abs(path.curvature), np.abs(path.curvature + path.sharpness * path.length))
 
 
 def integrate(path: Path, chord: float) -> Samples:
@@ -84,8 +85,9 @@ def integrate(path: Path, chord: float) -> Samples:
 def _steps(path: Path, chord: float) -> IntArray:
     """(n,) steps of each piece: 0 for a stop, 1 for a straight one."""
     bend = largest_curvature(path)
-    by_angle = bend * path.length / STEP_ANGLE
-    by_chord = path.length * np.sqrt(bend / (8 * chord))
+    with np.errstate(over="ignore"):
+        by_angle = bend * path.length / STEP_ANGLE
+        by_chord = path.length * np.sqrt(bend / (8 * chord))
     wanted = np.ceil(np.maximum(by_angle, by_chord))
     least = np.where(path.is_stop, 0, 1)
     steps = np.maximum(wanted, least)

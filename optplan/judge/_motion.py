@@ -109,7 +109,7 @@ def _uneven(trajectory: Trajectory, profile: Speeds) -> _Fault:
     allowed = RELATIVE * due + _INSTANT
     # rounding of t itself, and of a first or last bit of path driven at nearly no speed
     allowed = (
-        allowed + 1e-12 * abs(float(trajectory.t[-1])) + np.where(mean > 0, SAME_PLACE / np.maximum(mean, 1e-3), 0)
+        allowed + 1e-12 * abs(float(trajectory.t[-1])) + np.where(mean > 0, SAME_PLACE / np.maximum(mean, 1e-5), 0)
     )
     excess = np.where(late > allowed, late, 0.0)
     worst = int(np.argmax(excess))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from optplan.domain.arrays import FloatArray
+from optplan.domain.arrays import BoolArray, FloatArray
 from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check, Verdict
 from optplan.domain.result import Cover
@@ -40,8 +40,12 @@ def runs(path: Path) -> list[Run]:
     return [Run(int(label[a]), int(rows[a]), int(rows[b])) for a, b in zip(first, last, strict=True) if label[a] >= 0]
 
 
-def strokes(path: Path, samples: Samples, cover: Cover, limit: float) -> tuple[Check, Check]:
-    """The checks `strokes` (how many are not done exactly once as they should be) and `deviation` (m)."""
+def strokes(path: Path, samples: Samples, cover: Cover, limit: float) -> tuple[Check, Check, BoolArray]:
+    """The checks `strokes` (how many are not done exactly once as they should be) and `deviation` (m).
+
+    Also (n,) which strokes were driven faultlessly along their own points, to within `GAP`: their marks are theirs.
+    """
+    exact = np.zeros(len(cover.strokes), dtype=bool)
     faults: dict[int, str] = {}
     where: dict[int, Place] = {}
     seen: dict[int, int] = {}
@@ -58,6 +62,7 @@ def strokes(path: Path, samples: Samples, cover: Cover, limit: float) -> tuple[C
         if spot is None or found.deviation > farthest:
             farthest, spot, culprit = found.deviation, place_of(found.place), stroke.id
         fault = _fault(path, run, stroke, found, float(arc_lengths(points)[-1]), limit)
+        exact[run.stroke] = found.deviation <= GAP
         if fault:
             faults.setdefault(run.stroke, fault)
     for index, stroke in enumerate(cover.strokes):
@@ -65,6 +70,7 @@ def strokes(path: Path, samples: Samples, cover: Cover, limit: float) -> tuple[C
         if times != 1:
             faults[index] = "is not driven" if times == 0 else f"is driven {times} times"
             where.setdefault(index, place_of(stroke.points[0]))
+    exact[[k for k in faults if k < len(exact)]] = False
     names = [stroke.id for stroke in cover.strokes]
     detail = f"{count_of(len(names), 'stroke')}, each driven once with its own tool."
     if faults:
@@ -73,7 +79,7 @@ def strokes(path: Path, samples: Samples, cover: Cover, limit: float) -> tuple[C
     place = where[min(faults)] if faults else None
     done = held("strokes", len(faults), 0, "", place, detail)
     detail = f"Stroke {culprit} is followed least closely." if culprit else "No stroke is driven."
-    return done, held("deviation", farthest, limit, "m", spot, detail, slack=GAP)
+    return done, held("deviation", farthest, limit, "m", spot, detail, slack=GAP), exact
 
 
 def precedence(path: Path, cover: Cover) -> Check:
