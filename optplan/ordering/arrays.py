@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
@@ -19,7 +19,7 @@ DENSE_DUBINS = 700
 """Dubins paths are computed once and kept up to this many nodes (4 MB, 0.2 s)."""
 NEIGHBOURS = 10
 """Neighbouring clusters a search looks at."""
-_Entry = TypeVar("_Entry", bound=np.dtype[Any])
+_Array = TypeVar("_Array", bound=np.ndarray[Any, Any])
 
 
 def refuse_unknown_costs(problem: OrderingProblem) -> str | None:
@@ -73,18 +73,14 @@ def kernel_structure(problem: OrderingProblem, *, neighbours: int = NEIGHBOURS) 
     if neighbours:
         near, distance = nearest_clusters(problem, neighbours)
     pairs = np.unique(problem.precedence, axis=0).reshape(-1, 2)
-    before_first, before = _grouped(pairs[:, 1], pairs[:, 0], count)
-    after_first, after = _grouped(pairs[:, 0], pairs[:, 1], count)
     return Structure(
         _fixed(problem.cluster),
         _fixed(problem.first_node.astype(np.int64)),
         _fixed(partners(problem)),
         _fixed(near),
         _fixed(distance),
-        _fixed(before_first),
-        _fixed(before),
-        _fixed(after_first),
-        _fixed(after),
+        _fixed(_grouped(pairs[:, 1], pairs[:, 0], count)),
+        _fixed(_grouped(pairs[:, 0], pairs[:, 1], count)),
     )
 
 
@@ -133,13 +129,15 @@ def _rounded(states: FloatArray, costs: EuclidCosts | DubinsCosts) -> FloatArray
     return np.column_stack([states[:, :2], heading]) + 0.0
 
 
-def _grouped(keys: IntArray, values: IntArray, count: int) -> tuple[IntArray, IntArray]:
+def _grouped(keys: IntArray, values: IntArray, count: int) -> IntArray:
+    """One array in which the values of key c are at places array[c]..array[c + 1]-1."""
     order = np.argsort(keys, kind="stable")
-    return np.searchsorted(keys[order], np.arange(count + 1)).astype(np.int64), values[order].astype(np.int64)
+    ranges = np.searchsorted(keys[order], np.arange(count + 1)) + count + 1
+    return np.concatenate([ranges, values[order]]).astype(np.int64)
 
 
-def _fixed(values: np.ndarray[Any, _Entry]) -> np.ndarray[Any, _Entry]:
+def _fixed(values: _Array) -> _Array:
     """The array read-only and contiguous: numba compiles one signature."""
-    values = np.ascontiguousarray(values).view()
-    values.setflags(write=False)
-    return values
+    fixed = np.ascontiguousarray(values).view()
+    fixed.setflags(write=False)
+    return cast(_Array, fixed)

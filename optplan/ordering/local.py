@@ -31,7 +31,7 @@ def nearest_neighbour(run: Run) -> StopReason:
     structure = kernel_structure(problem, neighbours=0)
     count = problem.clusters
     first = problem.first_node
-    waiting = np.diff(structure.before_first)
+    waiting = np.diff(structure.before[: count + 1])
     may_end = np.logical_or.reduceat(np.isfinite(problem.end_costs), first[:-1]).astype(np.int64)
     steps = max(1, SLICE[1] // problem.nodes)
     for c in _first_clusters(problem, waiting):
@@ -41,7 +41,7 @@ def nearest_neighbour(run: Run) -> StopReason:
         nodes = np.zeros(count, dtype=np.int64)
         nodes[0] = own[np.argmin(costs.ends[0, own] + costs.ends[2, own])]
         left = waiting.copy()
-        left[structure.after[structure.after_first[c] : structure.after_first[c + 1]]] -= 1
+        left[structure.after[structure.after[c] : structure.after[c + 1]]] -= 1
         alive = np.delete(np.arange(count), c)
         alive = np.append(alive, c)
         done = 1
@@ -97,8 +97,7 @@ def local_search(run: Run) -> StopReason:
     cost = refresh(costs, structure, path, 0, count - 1)
     scale = max(abs(cost) / count, float(np.abs(path.sums[0]).mean()))
     work = Work(
-        queue=structure.cluster[path.nodes].copy(),
-        queued=np.ones(count, dtype=np.int64),
+        queue=np.stack([structure.cluster[path.nodes], np.ones(count, dtype=np.int64)]),
         value=np.zeros(problem.nodes),
         parent=np.zeros(problem.nodes, dtype=np.int64),
         buffer=np.zeros(count, dtype=np.int64),

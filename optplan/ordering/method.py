@@ -152,8 +152,7 @@ class Method:
         elif reason := self.refuse(small):
             raise SolverError(f"{self.name} cannot take this problem: {reason}")
         else:
-            stopped = run.stop() if stop.cancelled is not None and stop.cancelled() else self.search(run)
-            stopped = stopped or StopReason.FINISHED
+            stopped = self.search(run)
         return _answer(problem, run, original[run.nodes], stopped, self.name)
 
 

@@ -102,7 +102,8 @@ def _box_distances(problem: OrderingProblem, low: int, high: int) -> FloatArray:
     for k in range(lower.shape[1]):
         gap = np.maximum(lower[None, :, k] - upper[low:high, None, k], lower[low:high, None, k] - upper[None, :, k])
         square += np.maximum(gap, 0.0) ** 2
-    return np.sqrt(square)
+    distances: FloatArray = np.sqrt(square)
+    return distances
 
 
 def _from_arcs(problem: OrderingProblem) -> FloatArray:
@@ -115,4 +116,5 @@ def _from_arcs(problem: OrderingProblem) -> FloatArray:
         arcs = problem.costs.pairs(np.full(count, i), heads)
         c = problem.cluster[i]
         least[c] = np.minimum(least[c], np.minimum.reduceat(arcs, starts))
-    return np.minimum(least, least.T)
+    both: FloatArray = np.minimum(least, least.T)
+    return both

@@ -22,7 +22,7 @@ def layer(costs: Costs, structure: Structure, path: Path, work: Work, low: int, 
         before = at(path.nodes, low - 1)
         for k in range(first[c], first[c + 1]):
             work.value[k] = link(costs, before, k) + costs.ends[2, k]
-        return first[c + 1] - first[c]
+        return int(first[c + 1] - first[c])
     b = structure.cluster[path.nodes[p - 1]]
     for k in range(first[c], first[c + 1]):
         best, origin = math.inf, first[b]
@@ -32,7 +32,7 @@ def layer(costs: Costs, structure: Structure, path: Path, work: Work, low: int, 
                 best, origin = cost, h
         work.value[k] = best + costs.ends[2, k]
         work.parent[k] = origin
-    return (first[c + 1] - first[c]) * (first[b + 1] - first[b])
+    return int((first[c + 1] - first[c]) * (first[b + 1] - first[b]))
 
 
 @njit(cache=True, nogil=True)
@@ -78,5 +78,5 @@ def choose_nodes(costs: Costs, structure: Structure, path: Path, work: Work, p: 
         return False
     work.cost[0] = refresh(costs, structure, path, low, high)
     for q in range(low - 1, high + 2):
-        push(work, structure, path, q)
+        push(work.queue, work.counters, structure.cluster, path.nodes, q)
     return True

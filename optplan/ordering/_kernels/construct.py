@@ -78,7 +78,7 @@ def nearest(
         finals -= may_end[c]
         for a in range(place, left - 1):
             alive[a] = alive[a + 1]
-        for a in range(structure.after_first[c], structure.after_first[c + 1]):
+        for a in range(structure.after[c], structure.after[c + 1]):
             waiting[structure.after[a]] -= 1
     return done
 

@@ -32,7 +32,7 @@ class Structure(NamedTuple):
 
     cluster (n,); first (m + 1,) nodes of a cluster; partner (n,) the node that replaces a node when the piece of path
     around it is reversed; near (m, k) clusters close to each cluster, nearest first, and how far they are away;
-    predecessors and successors of cluster c are before[before_first[c]:before_first[c + 1]] and likewise.
+    the direct predecessors of cluster c are before[before[c]:before[c + 1]], its successors after[after[c]:...].
     """
 
     cluster: IntArray
@@ -40,18 +40,16 @@ class Structure(NamedTuple):
     partner: IntArray
     near: IntArray
     distance: FloatArray
-    before_first: IntArray
     before: IntArray
-    after_first: IntArray
     after: IntArray
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(cache=True, nogil=True)
 def arc(costs: Costs, i: int, j: int) -> float:
     """Cost of going from node i to node j."""
     data = costs.data
     if costs.kind == 0:
-        return data[i, j]
+        return float(data[i, j])
     if costs.kind == 1:
         half = data.shape[1] // 2
         total = 0.0
@@ -62,7 +60,7 @@ def arc(costs: Costs, i: int, j: int) -> float:
     return dubins_length(data[i, 3], data[i, 4], data[i, 5], data[j, 0], data[j, 1], data[j, 2], costs.radius)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(cache=True, nogil=True)
 def link(costs: Costs, i: int, j: int) -> float:
     """Cost of going from node i to node j, where -1 is a depot."""
     if i < 0:

@@ -18,179 +18,198 @@ LONGEST = 3
 
 
 @njit(cache=True, nogil=True)
-def _may_reverse(structure: Structure, path: Path, low: int, high: int) -> bool:
+def may_reverse(cluster: IntArray, before: IntArray, nodes: IntArray, place: IntArray, low: int, high: int) -> bool:
     """Whether no cluster in low..high must come before another one there."""
     for p in range(low, high + 1):
-        c = structure.cluster[path.nodes[p]]
-        for a in range(structure.before_first[c], structure.before_first[c + 1]):
-            if path.place[structure.before[a]] >= low and path.place[structure.before[a]] <= high:
+        c = cluster[nodes[p]]
+        for a in range(before[c], before[c + 1]):
+            if low <= place[before[a]] <= high:
                 return False
     return True
 
 
 @njit(cache=True, nogil=True)
-def may_swap(structure: Structure, path: Path, low: int, middle: int, high: int) -> bool:
+def may_swap(
+    cluster: IntArray, before: IntArray, nodes: IntArray, place: IntArray, low: int, middle: int, high: int
+) -> bool:
     """Whether the pieces low..middle-1 and middle..high may change places."""
-    if middle - low <= high + 1 - middle:
-        for p in range(low, middle):
-            c = structure.cluster[path.nodes[p]]
-            for a in range(structure.after_first[c], structure.after_first[c + 1]):
-                if middle <= path.place[structure.after[a]] <= high:
-                    return False
-    else:
-        for p in range(middle, high + 1):
-            c = structure.cluster[path.nodes[p]]
-            for a in range(structure.before_first[c], structure.before_first[c + 1]):
-                if low <= path.place[structure.before[a]] < middle:
-                    return False
+    for p in range(middle, high + 1):
+        c = cluster[nodes[p]]
+        for a in range(before[c], before[c + 1]):
+            if low <= place[before[a]] < middle:
+                return False
     return True
 
 
 @njit(cache=True, nogil=True)
-def _reverse(structure: Structure, path: Path, low: int, high: int) -> None:
-    while low < high:
-        a, b = path.nodes[low], path.nodes[high]
-        path.nodes[low], path.nodes[high] = structure.partner[b], structure.partner[a]
-        low += 1
-        high -= 1
-    if low == high:
-        path.nodes[low] = structure.partner[path.nodes[low]]
+def may_move(
+    cluster: IntArray, before: IntArray, nodes: IntArray, place: IntArray, low: int, high: int, to: int, flip: bool
+) -> bool:
+    """Whether the segment low..high may go behind place `to`, turned round or not."""
+    if flip and not may_reverse(cluster, before, nodes, place, low, high):
+        return False
+    if to > high:
+        return may_swap(cluster, before, nodes, place, low, high + 1, to)
+    return may_swap(cluster, before, nodes, place, to + 1, low, high)
 
 
 @njit(cache=True, nogil=True)
-def swap(path: Path, buffer: IntArray, low: int, middle: int, high: int) -> None:
+def reverse(partner: IntArray, nodes: IntArray, low: int, high: int) -> None:
+    """Travel the piece low..high backwards."""
+    while low < high:
+        a, b = nodes[low], nodes[high]
+        nodes[low], nodes[high] = partner[b], partner[a]
+        low += 1
+        high -= 1
+    if low == high:
+        nodes[low] = partner[nodes[low]]
+
+
+@njit(cache=True, nogil=True)
+def swap(nodes: IntArray, buffer: IntArray, low: int, middle: int, high: int) -> None:
     """Exchange the pieces low..middle-1 and middle..high."""
     for p in range(low, high + 1):
-        buffer[p] = path.nodes[p]
+        buffer[p] = nodes[p]
     size = high + 1 - middle
     for p in range(size):
-        path.nodes[low + p] = buffer[middle + p]
+        nodes[low + p] = buffer[middle + p]
     for p in range(middle - low):
-        path.nodes[low + size + p] = buffer[low + p]
+        nodes[low + size + p] = buffer[low + p]
+
+
+@njit(cache=True, nogil=True)
+def _joined(costs: Costs, left: int, low: int, high: int, right: int) -> float:
+    """Cost of the two links of a piece that begins with node `low` and ends with node `high`."""
+    return link(costs, left, low) + link(costs, high, right)
+
+
+@njit(cache=True, nogil=True)
+def _best_node(costs: Costs, left: int, right: int, low: int, high: int) -> tuple[float, int]:
+    """The cheapest of the nodes low..high-1 between two nodes: its cost, itself."""
+    best, chosen = _joined(costs, left, low, low, right) + costs.ends[2, low], low
+    for k in range(low + 1, high):
+        cost = _joined(costs, left, k, k, right) + costs.ends[2, k]
+        if cost < best:
+            best, chosen = cost, k
+    return best, chosen
+
+
+@njit(cache=True, nogil=True)
+def _destination(structure: Structure, path: Path, c: int, a: int, reach: float) -> int:
+    """Place of the a-th place to go to, -3 when there is none any more; the two ends of the path come first (a < 0)."""
+    if a < 0:
+        return -1 if a == -2 else len(path.nodes)
+    # a better neighbour must be nearer than a present one
+    if a >= structure.near.shape[1] or structure.distance[c, a] >= reach:
+        return -3
+    return int(path.place[structure.near[c, a]])
+
+
+@njit(cache=True, nogil=True)
+def _best_reversal(
+    costs: Costs, structure: Structure, path: Path, c: int, reach: float, best: float
+) -> tuple[float, int, int]:
+    """The best reversal that makes c and a place close to it neighbours: change of cost, low, high."""
+    nodes, partner, sums = path.nodes, structure.partner, path.sums
+    p = path.place[c]
+    found_low, found_high = -1, -1
+    for a in range(-2, structure.near.shape[1]):
+        q = _destination(structure, path, c, a, reach)
+        if q == -3:
+            break
+        for side in range(2):
+            low, high = min(p, q) + 1 - side, max(p, q) - side
+            if low < 0 or high >= len(nodes) or low >= high:
+                continue
+            left, right = at(nodes, low - 1), at(nodes, high + 1)
+            turned_low, turned_high = partner[nodes[low]], partner[nodes[high]]
+            delta = sums[3, high] - sums[3, low] - sums[2, high] + sums[2, low]
+            delta += costs.ends[2, turned_low] - costs.ends[2, nodes[low]]
+            delta += _joined(costs, left, turned_high, turned_low, right)
+            delta -= _joined(costs, left, nodes[low], nodes[high], right)
+            if delta < best and may_reverse(structure.cluster, structure.before, nodes, path.place, low, high):
+                best, found_low, found_high = delta, low, high
+    return best, found_low, found_high
+
+
+@njit(cache=True, nogil=True)
+def _best_segment(
+    costs: Costs, structure: Structure, path: Path, c: int, reach: float, best: float
+) -> tuple[float, int, int, int, bool, int]:
+    """The best move of a segment that begins or ends with c: change of cost, low, high, to, flip, node of c or -1."""
+    nodes, partner, sums = path.nodes, structure.partner, path.sums
+    count = len(nodes)
+    p = path.place[c]
+    found = (-1, -1, -1, False, -1)
+    for variant in range(2 * LONGEST - 1):
+        low = p if variant < LONGEST else p - (variant - LONGEST + 1)
+        high = p + variant if variant < LONGEST else p
+        if low < 0 or high >= count:
+            continue
+        left, right = at(nodes, low - 1), at(nodes, high + 1)
+        gain = _joined(costs, left, nodes[low], nodes[high], right) - link(costs, left, right)
+        turned_low, turned_high = partner[nodes[low]], partner[nodes[high]]
+        turning = sums[3, high] - sums[3, low] - sums[2, high] + sums[2, low]
+        turning += costs.ends[2, turned_low] - costs.ends[2, nodes[low]]
+        if low == high:
+            gain += costs.ends[2, nodes[p]]
+            turning = 0.0
+        # lines obey the triangle inequality: putting a piece somewhere costs at least nothing
+        if costs.kind > 0 and gain - min(turning, 0.0) <= -best:
+            continue
+        for a in range(-2, structure.near.shape[1]):
+            q = _destination(structure, path, c, a, reach)
+            if q == -3:
+                break
+            for to in range(max(-1, q - 1), min(q + 1, count)):
+                if low - 1 <= to <= high:
+                    continue
+                left, right = at(nodes, to), at(nodes, to + 1)
+                saved = link(costs, left, right) + gain
+                node, flip = -1, False
+                if low == high:
+                    delta, node = _best_node(costs, left, right, structure.first[c], structure.first[c + 1])
+                else:
+                    delta = _joined(costs, left, nodes[low], nodes[high], right)
+                    turned = _joined(costs, left, turned_high, turned_low, right) + turning
+                    if turned < delta:
+                        delta, flip = turned, True
+                if delta - saved < best and may_move(
+                    structure.cluster, structure.before, nodes, path.place, low, high, to, flip
+                ):
+                    best = delta - saved
+                    found = (low, high, to, flip, node)
+    return best, found[0], found[1], found[2], found[3], found[4]
 
 
 @njit(cache=True, nogil=True)
 def improve(costs: Costs, structure: Structure, path: Path, work: Work, c: int) -> bool:
     """Make the best improving move around cluster c, if there is one."""
-    nodes, place, partner = path.nodes, path.place, structure.partner
-    count = len(nodes)
-    p = place[c]
-    best = -work.cost[2]
-    # the best move: reverse b_low..b_high (kind 1), or put the segment b_low..b_high after place b_to (kind 2)
-    kind, b_low, b_high, b_to, b_flip, b_node = 0, 0, 0, 0, False, -1
-    near = structure.near
-    effort = 0
+    nodes, partner, counters = path.nodes, structure.partner, work.counters
+    p = path.place[c]
     reach = max(link(costs, at(nodes, p - 1), nodes[p]), link(costs, nodes[p], at(nodes, p + 1)))
-    for a in range(-2, near.shape[1]):
-        # besides the neighbours, the two ends of the path are places to go to
-        if a == -2:
-            q = -1
-        elif a == -1:
-            q = count
+    best, r_low, r_high = _best_reversal(costs, structure, path, c, reach, -work.cost[2])
+    best, s_low, s_high, to, flip, node = _best_segment(costs, structure, path, c, reach, best)
+    counters[EFFORT] += 100 + 8 * (structure.first[c + 1] - structure.first[c])
+    if s_low >= 0:
+        if flip:
+            reverse(partner, nodes, s_low, s_high)
+        if node >= 0:
+            nodes[s_low] = node
+        size = s_high - s_low + 1
+        if to > s_high:
+            swap(nodes, work.buffer, s_low, s_high + 1, to)
+            low, high, seam = s_low, to, to - size
         else:
-            # a better neighbour must be nearer than a present one
-            if structure.distance[c, a] >= reach:
-                break
-            q = place[near[c, a]]
-        for side in range(2):
-            low, high = (min(p, q) + 1, max(p, q)) if side == 0 else (min(p, q), max(p, q) - 1)
-            if low < 0 or high >= count or low >= high:
-                continue
-            before, after = at(path.nodes, low - 1), at(path.nodes, high + 1)
-            delta = (
-                link(costs, before, partner[nodes[high]])
-                + link(costs, partner[nodes[low]], after)
-                - link(costs, before, nodes[low])
-                - link(costs, nodes[high], after)
-                + path.sums[3, high]
-                - path.sums[3, low]
-                + costs.ends[2, partner[nodes[low]]]
-                - path.sums[2, high]
-                + path.sums[2, low]
-                - costs.ends[2, nodes[low]]
-            )
-            effort += 4
-            if delta < best and _may_reverse(structure, path, low, high):
-                best, kind, b_low, b_high = delta, 1, low, high
-        for variant in range(2 * LONGEST - 1):
-            # segments that begin (variants 0..) or end with c
-            low = p if variant < LONGEST else p - (variant - LONGEST + 1)
-            high = p + variant if variant < LONGEST else p
-            if low < 0 or high >= count:
-                continue
-            before, after = at(path.nodes, low - 1), at(path.nodes, high + 1)
-            gain = (
-                link(costs, before, nodes[low]) + link(costs, nodes[high], after)
-                - link(costs, before, after)
-            )  # fmt: skip
-            forwards = path.sums[2, high] - path.sums[2, low] + costs.ends[2, nodes[low]]
-            backwards = path.sums[3, high] - path.sums[3, low] + costs.ends[2, partner[nodes[low]]]
-            for to in range(q - 1, q + 1):
-                if to < -1 or to >= count or (to >= low - 1 and to <= high):
-                    continue
-                left, right = at(path.nodes, to), at(path.nodes, to + 1)
-                gap = link(costs, left, right)
-                effort += 5
-                if low == high:
-                    for k in range(structure.first[c], structure.first[c + 1]):
-                        delta = (
-                            link(costs, left, k) + link(costs, k, right) + costs.ends[2, k] - costs.ends[2, nodes[p]]
-                            - gap - gain
-                        )  # fmt: skip
-                        if delta < best and _may_move(structure, path, low, high, to):
-                            best, kind, b_low, b_high, b_to, b_flip, b_node = delta, 2, low, high, to, False, k
-                    effort += 2 * (structure.first[c + 1] - structure.first[c])
-                    continue
-                delta = link(costs, left, nodes[low]) + link(costs, nodes[high], right) - gap - gain
-                if delta < best and _may_move(structure, path, low, high, to):
-                    best, kind, b_low, b_high, b_to, b_flip, b_node = delta, 2, low, high, to, False, -1
-                delta = (
-                    link(costs, left, partner[nodes[high]]) + link(costs, partner[nodes[low]], right)
-                    - gap - gain + backwards - forwards
-                )  # fmt: skip
-                if (
-                    delta < best
-                    and _may_move(structure, path, low, high, to)
-                    and _may_reverse(structure, path, low, high)
-                ):
-                    best, kind, b_low, b_high, b_to, b_flip, b_node = delta, 2, low, high, to, True, -1
-    work.counters[EFFORT] += effort
-    if kind == 0:
-        return choose_nodes(costs, structure, path, work, p)
-    if kind == 1:
-        _reverse(structure, path, b_low, b_high)
-        push(work, structure, path, b_low)
-        push(work, structure, path, b_high)
-        low, high = b_low, b_high
+            swap(nodes, work.buffer, to + 1, s_low, s_high)
+            low, high, seam = to + 1, s_high, to + size
+    elif r_low >= 0:
+        reverse(partner, nodes, r_low, r_high)
+        low, high, seam = r_low, r_high, r_low
     else:
-        if b_flip:
-            _reverse(structure, path, b_low, b_high)
-        if b_node >= 0:
-            nodes[b_low] = b_node
-        size = b_high - b_low + 1
-        if b_to > b_high:
-            swap(path, work.buffer, b_low, b_high + 1, b_to)
-            low, high = b_low, b_to
-            seam = b_to - size
-        else:
-            swap(path, work.buffer, b_to + 1, b_low, b_high)
-            low, high = b_to + 1, b_high
-            seam = b_to + size
-        for q in range(seam, seam + 2):
-            push(work, structure, path, q)
-        push(work, structure, path, low)
-        push(work, structure, path, high)
-    push(work, structure, path, low - 1)
-    push(work, structure, path, high + 1)
+        return choose_nodes(costs, structure, path, work, p)
     work.cost[0] = refresh(costs, structure, path, low, high)
-    work.counters[EFFORT] += 2 * (high - low)
-    push(work, structure, path, place[c])
+    counters[EFFORT] += 2 * (high - low)
+    for q in (low - 1, low, seam, seam + 1, high, high + 1, path.place[c]):
+        push(work.queue, counters, structure.cluster, nodes, q)
     return True
-
-
-@njit(cache=True, nogil=True)
-def _may_move(structure: Structure, path: Path, low: int, high: int, to: int) -> bool:
-    """Whether the segment low..high may go behind place `to`."""
-    if to > high:
-        return may_swap(structure, path, low, high + 1, to)
-    return may_swap(structure, path, to + 1, low, high)

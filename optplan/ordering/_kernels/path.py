@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 from optplan.domain.arrays import FloatArray, IntArray
@@ -26,19 +27,18 @@ class Path(NamedTuple):
 class Work(NamedTuple):
     """What the search remembers between two slices.
 
-    queue (m,) ring of clusters to look at, queued (m,) whether a cluster is in it; value, parent (n,) of the dynamic
+    queue (2, m): ring of clusters to look at, and whether a cluster is in it; value, parent (n,) of the dynamic
     programme; buffer (m,); counters (8,), see the constants below; cost (3,): now, best, smallest gain that counts;
     random (1,) state of the generator.
     """
 
     queue: IntArray
-    queued: IntArray
     value: FloatArray
     parent: IntArray
     buffer: IntArray
     counters: IntArray
     cost: FloatArray
-    random: np.ndarray  # type: ignore[type-arg]
+    random: npt.NDArray[np.uint64]
 
 
 HEAD, WAITING, ITERATIONS, LAYER, SWEEP, FINISHED, EFFORT = 0, 1, 2, 3, 4, 5, 6
@@ -70,12 +70,22 @@ def refresh(costs: Costs, structure: Structure, path: Path, low: int, high: int)
 
 
 @njit(cache=True, nogil=True)
-def push(work: Work, structure: Structure, path: Path, p: int) -> None:
+def push(queue: IntArray, counters: IntArray, cluster: IntArray, nodes: IntArray, p: int) -> None:
     """Look at the cluster at place p again."""
-    count = len(path.nodes)
+    count = len(nodes)
     if 0 <= p < count:
-        c = structure.cluster[path.nodes[p]]
-        if work.queued[c] == 0:
-            work.queued[c] = 1
-            work.queue[(work.counters[HEAD] + work.counters[WAITING]) % count] = c
-            work.counters[WAITING] += 1
+        c = cluster[nodes[p]]
+        if queue[1, c] == 0:
+            queue[1, c] = 1
+            queue[0, (counters[HEAD] + counters[WAITING]) % count] = c
+            counters[WAITING] += 1
+
+
+@njit(cache=True, nogil=True)
+def copy(source: Path, target: Path) -> None:
+    """Make one path equal to another (loops, because slice assignment brings numba's string functions along)."""
+    for p in range(len(source.nodes)):
+        target.nodes[p] = source.nodes[p]
+        target.place[p] = source.place[p]
+        for row in range(4):
+            target.sums[row, p] = source.sums[row, p]

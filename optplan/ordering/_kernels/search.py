@@ -18,6 +18,7 @@ from optplan.ordering._kernels.path import (
     WAITING,
     Path,
     Work,
+    copy,
     push,
     refresh,
 )
@@ -34,7 +35,7 @@ def _random(work: Work, bound: int) -> int:
     z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     z = z ^ (z >> np.uint64(31))
-    return np.int64(z >> np.uint64(1)) % bound
+    return int(np.int64(z >> np.uint64(1)) % bound)
 
 
 @njit(cache=True, nogil=True)
@@ -46,11 +47,11 @@ def _perturb(costs: Costs, structure: Structure, path: Path, work: Work) -> None
         one, two = 1 + _random(work, longest), 1 + _random(work, longest)
         low = _random(work, count - one - two + 1)
         middle, high = low + one, low + one + two - 1
-        if may_swap(structure, path, low, middle, high):
-            swap(path, work.buffer, low, middle, high)
+        if may_swap(structure.cluster, structure.before, path.nodes, path.place, low, middle, high):
+            swap(path.nodes, work.buffer, low, middle, high)
             work.cost[0] = refresh(costs, structure, path, low, high)
             for p in (low - 1, low, low + two - 1, low + two, high, high + 1):
-                push(work, structure, path, p)
+                push(work.queue, work.counters, structure.cluster, path.nodes, p)
             return
         longest = max(1, longest // 2)
 
@@ -75,35 +76,32 @@ def search(
     counters = work.counters
     count = len(path.nodes)
     counters[EFFORT] = 0
+    begin: int = np.int64(0)  # type: ignore[assignment]  # a plain 0 would be compiled as a signature of its own
     while counters[EFFORT] < budget:
         if counters[WAITING] > 0:
-            c = work.queue[counters[HEAD]]
+            c = work.queue[0, counters[HEAD]]
             counters[HEAD] = (counters[HEAD] + 1) % count
             counters[WAITING] -= 1
-            work.queued[c] = 0
+            work.queue[1, c] = 0
             improve(costs, structure, path, work, c)
             continue
         if counters[SWEEP] == 1:
-            counters[EFFORT] += layer(costs, structure, path, work, 0, counters[LAYER])
+            counters[EFFORT] += layer(costs, structure, path, work, begin, counters[LAYER])
             counters[LAYER] += 1
             if counters[LAYER] == count:
                 counters[LAYER] = 0
                 counters[SWEEP] = 0
-                if settle(costs, structure, path, work, 0, count - 1):
-                    work.cost[0] = refresh(costs, structure, path, 0, count - 1)
+                if settle(costs, structure, path, work, begin, count - 1):
+                    work.cost[0] = refresh(costs, structure, path, begin, count - 1)
                     for p in range(count):
-                        push(work, structure, path, p)
+                        push(work.queue, work.counters, structure.cluster, path.nodes, p)
             continue
         if work.cost[0] <= work.cost[1]:
             work.cost[1] = work.cost[0]
-            best.nodes[:] = path.nodes
-            best.place[:] = path.place
-            best.sums[:] = path.sums
+            copy(path, best)
         else:
             work.cost[0] = work.cost[1]
-            path.nodes[:] = best.nodes
-            path.place[:] = best.place
-            path.sums[:] = best.sums
+            copy(best, path)
         counters[EFFORT] += count
         if counters[ITERATIONS] >= limit or work.cost[1] <= target:
             counters[FINISHED] = 1
