@@ -56,7 +56,7 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
 
     strokes: list[Stroke] = []
     areas: list[Area] = []
-    notes = list(read.notes)
+    notes = [*read.notes, *_offset_note(robot)]
     for done, mark in enumerate(drawn):
         progress(Progress("cover", done / len(drawn), message=mark.element.id))
         lines = placed(mark.element, where, tolerance)
@@ -79,6 +79,14 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
     start = None if read.start is None else where.apply(read.start[None, :])[0]
     begin = None if start is None else (float(start[0]), float(start[1]))
     return Cover(tuple(strokes), tuple(areas), chain, begin, canvas, tuple(notes))
+
+
+def _offset_note(robot: Robot) -> list[Note]:
+    tool = robot.tool
+    if tool.right == 0 and tool.ahead == 0:
+        return []
+    text = f"the plan is the path of the tool, {tool.right:g} m right and {tool.ahead:g} m ahead of the robot's middle"
+    return [Note("notice", robot.name, text)]
 
 
 def _with_settings(job: Drawing, options: CoverOptions) -> Drawing:
