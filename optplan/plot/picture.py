@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-ARROWS = 60
-"""About how many direction arrows work and travel get each."""
+ARROWS = 12
+"""Direction arrows along work or travel as long as the picture is wide; no more than 400 in all."""
 NUMBERED = 60
 """Up to this many strokes carry their number."""
 CHORD = 0.05
@@ -128,8 +128,9 @@ def _draw_path(axes: Axes, plan: Plan, path: Path, colours: _Colours, scale: flo
     axes.add_collection(
         LineCollection(_lines(path, by_hand), colors=colours.travel, linewidths=1.1, linestyles="--", zorder=3)
     )
-    _arrows(axes, path, moving & down, colours.arrow, colours.work)
-    _arrows(axes, path, between, colours.travel, colours.ground)
+    spacing = float(max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))) / ARROWS
+    _arrows(axes, path, moving & down, spacing, colours.arrow, colours.work)
+    _arrows(axes, path, between, spacing, colours.travel, colours.ground)
     _numbers(axes, plan, colours)
 
 
@@ -155,14 +156,15 @@ def _lines(path: Path, rows: BoolArray) -> list[FloatArray]:
     return [np.concatenate(lines) for lines in joined]
 
 
-def _arrows(axes: Axes, path: Path, rows: BoolArray, colour: str, edge: str) -> None:
-    """Arrow heads at even distances along the chosen rows."""
+def _arrows(axes: Axes, path: Path, rows: BoolArray, spacing: float, colour: str, edge: str) -> None:
+    """Arrow heads at even distances (m) along the chosen rows."""
     chosen = np.flatnonzero(rows)
     total = float(path.length[chosen].sum())
     if total <= 0:
         return
     offsets = np.concatenate([[0.0], np.cumsum(path.length[chosen])])
-    places = (np.arange(ARROWS) + 0.5) * total / ARROWS
+    count = int(np.clip(round(total / spacing), 1, 400))
+    places = (np.arange(count) + 0.5) * total / count
     row = np.clip(np.searchsorted(offsets, places, side="right") - 1, 0, len(chosen) - 1)
     states = along(path, chosen[row], places - offsets[row])
     axes.quiver(
