@@ -17,8 +17,9 @@ from optplan.domain.ordering import DubinsCosts, EuclidCosts, MatrixCosts, Order
 def dubins_batch(starts: FloatArray, ends: FloatArray, radius: float) -> FloatArray:
     from optplan.geometry._kernels import dubins_length
 
+    length: Any = dubins_length
     rows = zip(starts.tolist(), ends.tolist(), strict=True)
-    return np.array([dubins_length(*a, *b, radius) for a, b in rows], dtype=np.float64)
+    return np.array([length(*a, *b, radius) for a, b in rows], dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)

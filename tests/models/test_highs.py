@@ -145,7 +145,7 @@ def test_an_error_in_the_child_is_told() -> None:
 
 
 def test_a_child_that_cannot_start(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(highs.sys, "executable", str(tmp_path / "python"))
+    monkeypatch.setattr("sys.executable", str(tmp_path / "python"))
     with pytest.raises(highs.HighsError, match="cannot be started"):
         highs.run(highs.compile_model(knapsack()))
 
