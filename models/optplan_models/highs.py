@@ -157,19 +157,7 @@ def run(
         "costs": compiled.costs * scale,
         "offset": compiled.offset * scale,
         "start": start,
-        **{
-            name: getattr(compiled, name)
-            for name in (
-                "column_lower",
-                "column_upper",
-                "row_lower",
-                "row_upper",
-                "starts",
-                "index",
-                "values",
-                "integer",
-            )
-        },
+        **{name: getattr(compiled, name) for name in _ARRAYS},
         "options": {
             "threads": 1,
             "random_seed": seed % 2**31,

@@ -12,6 +12,7 @@ import struct
 import sys
 import threading
 import time
+import traceback
 from typing import Any, BinaryIO
 
 BOUND_EVERY = 0.05
@@ -27,7 +28,8 @@ def send(out: BinaryIO, *message: Any) -> None:
 
 def leave_with_parent() -> None:
     """End the process when standard input closes."""
-    sys.stdin.buffer.read()
+    while os.read(0, 4096):
+        pass
     os._exit(1)
 
 
@@ -95,12 +97,16 @@ def main() -> None:
     # whatever libraries print must not get between the frames
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    task = pickle.load(sys.stdin.buffer)
-    threading.Thread(target=leave_with_parent, daemon=True).start()
-    solve(task, out)
-    out.close()
-    # the thread that waits for the parent holds standard input: leave without waiting for it
-    sys.stderr.flush()
+    try:
+        task = pickle.load(sys.stdin.buffer)
+        threading.Thread(target=leave_with_parent, daemon=True).start()
+        solve(task, out)
+        out.close()
+    except Exception:
+        traceback.print_exc()
+        sys.stderr.flush()
+        os._exit(1)
+    # leave without waiting for the thread, which waits for the parent
     os._exit(0)
 
 

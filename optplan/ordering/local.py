@@ -14,8 +14,10 @@ from optplan.ordering.method import Run
 
 ITERATIONS_EACH = 50
 """Perturbations for each cluster, when nothing else ends the search; at least 2000."""
-SLICE = {0: 3_000_000, 1: 2_000_000, 2: 60_000}
+SLICE = {0: 500_000, 1: 500_000, 2: 15_000}
 """Arc costs between two looks at the stop rule, by kind of cost: at most some 0.05 s."""
+NN_SLICE = 5_000_000
+"""Arc costs of nearest neighbours between two looks at the stop rule."""
 NN_WORK = 20_000_000
 """Arc costs spent on trying several first clusters."""
 SWEEP_WORK = 40_000_000
@@ -33,7 +35,7 @@ def nearest_neighbour(run: Run) -> StopReason:
     first = problem.first_node
     waiting = np.diff(structure.before[: count + 1])
     may_end = np.logical_or.reduceat(np.isfinite(problem.end_costs), first[:-1]).astype(np.int64)
-    steps = max(1, SLICE[1] // problem.nodes)
+    steps = max(1, NN_SLICE // problem.nodes)
     for c in _first_clusters(problem, waiting):
         if (stop := run.stop()) and (len(run.nodes) or stop is StopReason.CANCELLED):
             return stop
@@ -101,7 +103,7 @@ def local_search(run: Run) -> StopReason:
         value=np.zeros(problem.nodes),
         parent=np.zeros(problem.nodes, dtype=np.int64),
         buffer=np.zeros(count, dtype=np.int64),
-        counters=np.array([0, count, 0, 0, _sweep(problem, costs.kind), 0, 0, 0], dtype=np.int64),
+        counters=np.array([0, count, 0, 0, _sweep(problem, costs.kind), 0, 0, _ends(problem)], dtype=np.int64),
         # gains in the last digits are rounding, and could go on for ever
         cost=np.array([cost, math.inf, 1e-10 * scale]),
         random=np.array([run.seed % 2**64], dtype=np.uint64),
@@ -127,6 +129,15 @@ def local_search(run: Run) -> StopReason:
         if stop and stop is not StopReason.ITERATIONS:
             return stop
         assert work.counters[SWEEP] <= 1
+
+
+def _ends(problem: OrderingProblem) -> int:
+    """-2 to consider moves to the two ends of the path from everywhere, 0 only from clusters near them.
+
+    With free ends a move there pays only when the new neighbour is near, and then it is among the neighbours.
+    """
+    free = all(v.min() == v.max() for v in (problem.start_costs, problem.end_costs))
+    return 0 if free else -2
 
 
 def _sweep(problem: OrderingProblem, kind: int) -> int:

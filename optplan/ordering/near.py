@@ -22,7 +22,7 @@ def cluster_matrix(problem: OrderingProblem) -> FloatArray:
     """
     count = problem.clusters
     if _places(problem) is None or problem.nodes <= EXACT_NODES:
-        matrix = _from_arcs(problem)
+        matrix = cheapest_arcs(problem, problem.cluster, problem.cluster)
     else:
         matrix = np.empty((count, count))
         close, distances = nearest_clusters(problem, CLOSE)
@@ -44,7 +44,7 @@ def nearest_clusters(problem: OrderingProblem, wanted: int) -> tuple[IntArray, F
     wanted = min(wanted, count - 1)
     places = _places(problem)
     if places is None or problem.nodes <= EXACT_NODES:
-        matrix = _from_arcs(problem)
+        matrix = cheapest_arcs(problem, problem.cluster, problem.cluster)
         np.fill_diagonal(matrix, np.inf)
         near = np.argsort(matrix, axis=1, kind="stable")[:, :wanted].astype(np.int64)
         return near, np.take_along_axis(matrix, near, axis=1)
@@ -106,15 +106,19 @@ def _box_distances(problem: OrderingProblem, low: int, high: int) -> FloatArray:
     return distances
 
 
-def _from_arcs(problem: OrderingProblem) -> FloatArray:
-    """(m, m) the cheapest arc between two clusters in either direction, from all arcs."""
-    starts = problem.first_node[:-1]
-    count = problem.nodes
-    heads = np.arange(count)
-    least = np.full((problem.clusters, problem.clusters), np.inf)
-    for i in range(count):
-        arcs = problem.costs.pairs(np.full(count, i), heads)
-        c = problem.cluster[i]
-        least[c] = np.minimum(least[c], np.minimum.reduceat(arcs, starts))
+def cheapest_arcs(problem: OrderingProblem, enter: IntArray, leave: IntArray) -> FloatArray:
+    """(t, t) the cheapest arc between two groups of nodes in either direction, infinite where there is none.
+
+    enter, leave (n,): the group in which an arc into a node ends, in non-decreasing order, and one out of it begins.
+    """
+    groups, starts = np.unique(enter, return_index=True)
+    count = int(max(enter.max(), leave.max())) + 1
+    everything = np.arange(problem.nodes)
+    least = np.full((count, count), np.inf)
+    for i in range(problem.nodes):
+        arcs = problem.costs.pairs(np.full(problem.nodes, i), everything)
+        arcs = np.where(problem.cluster == problem.cluster[i], np.inf, arcs)
+        row = least[leave[i]]
+        row[groups] = np.minimum(row[groups], np.minimum.reduceat(arcs, starts))
     both: FloatArray = np.minimum(least, least.T)
     return both

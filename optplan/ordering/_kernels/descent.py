@@ -11,7 +11,7 @@ from numba import njit
 from optplan.domain.arrays import IntArray
 from optplan.ordering._kernels.choice import choose_nodes
 from optplan.ordering._kernels.costs import Costs, Structure, link
-from optplan.ordering._kernels.path import EFFORT, Path, Work, at, push, refresh
+from optplan.ordering._kernels.path import EFFORT, ENDS, Path, Work, at, push, refresh
 
 LONGEST = 3
 """Longest segment that or-opt moves."""
@@ -107,13 +107,13 @@ def _destination(structure: Structure, path: Path, c: int, a: int, reach: float)
 
 @njit(cache=True, nogil=True)
 def _best_reversal(
-    costs: Costs, structure: Structure, path: Path, c: int, reach: float, best: float
+    costs: Costs, structure: Structure, path: Path, c: int, ends: int, reach: float, best: float
 ) -> tuple[float, int, int]:
     """The best reversal that makes c and a place close to it neighbours: change of cost, low, high."""
     nodes, partner, sums = path.nodes, structure.partner, path.sums
     p = path.place[c]
     found_low, found_high = -1, -1
-    for a in range(-2, structure.near.shape[1]):
+    for a in range(ends, structure.near.shape[1]):
         q = _destination(structure, path, c, a, reach)
         if q == -3:
             break
@@ -134,7 +134,7 @@ def _best_reversal(
 
 @njit(cache=True, nogil=True)
 def _best_segment(
-    costs: Costs, structure: Structure, path: Path, c: int, reach: float, best: float
+    costs: Costs, structure: Structure, path: Path, c: int, ends: int, reach: float, best: float
 ) -> tuple[float, int, int, int, bool, int]:
     """The best move of a segment that begins or ends with c: change of cost, low, high, to, flip, node of c or -1."""
     nodes, partner, sums = path.nodes, structure.partner, path.sums
@@ -157,7 +157,7 @@ def _best_segment(
         # lines obey the triangle inequality: putting a piece somewhere costs at least nothing
         if costs.kind > 0 and gain - min(turning, 0.0) <= -best:
             continue
-        for a in range(-2, structure.near.shape[1]):
+        for a in range(ends, structure.near.shape[1]):
             q = _destination(structure, path, c, a, reach)
             if q == -3:
                 break
@@ -188,8 +188,8 @@ def improve(costs: Costs, structure: Structure, path: Path, work: Work, c: int) 
     nodes, partner, counters = path.nodes, structure.partner, work.counters
     p = path.place[c]
     reach = max(link(costs, at(nodes, p - 1), nodes[p]), link(costs, nodes[p], at(nodes, p + 1)))
-    best, r_low, r_high = _best_reversal(costs, structure, path, c, reach, -work.cost[2])
-    best, s_low, s_high, to, flip, node = _best_segment(costs, structure, path, c, reach, best)
+    best, r_low, r_high = _best_reversal(costs, structure, path, c, counters[ENDS], reach, -work.cost[2])
+    best, s_low, s_high, to, flip, node = _best_segment(costs, structure, path, c, counters[ENDS], reach, best)
     counters[EFFORT] += 100 + 8 * (structure.first[c + 1] - structure.first[c])
     if s_low >= 0:
         if flip:

@@ -41,7 +41,7 @@ class Work(NamedTuple):
     random: npt.NDArray[np.uint64]
 
 
-HEAD, WAITING, ITERATIONS, LAYER, SWEEP, FINISHED, EFFORT = 0, 1, 2, 3, 4, 5, 6
+HEAD, WAITING, ITERATIONS, LAYER, SWEEP, FINISHED, EFFORT, ENDS = 0, 1, 2, 3, 4, 5, 6, 7
 
 
 @njit(cache=True, nogil=True)

@@ -1,0 +1,253 @@
+"""Every solver through the same tests."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, strokes
+
+from optplan.domain.errors import InputError, SolverError
+from optplan.domain.ordering import EuclidCosts, MatrixCosts, Ordering, OrderingProblem, Status
+from optplan.domain.progress import Progress
+from optplan.domain.stop import StopReason, StopRule
+from optplan.ordering import SOLVERS, lower_bound, solve
+
+CASES = list(cases())
+PROVES = {"exact", "brute", "auto"}
+SEARCHES = {"nn", "2opt"}
+EVERY = pytest.mark.parametrize("solver", list(SOLVERS))
+TOLERANCE = 1e-7
+
+
+def judge(problem: OrderingProblem, answer: Ordering, best: float) -> None:
+    """What must be true of every answer, whoever gave it."""
+    slack = TOLERANCE * max(1.0, abs(best)) if math.isfinite(best) else 0.0
+    assert answer.bound <= best + slack
+    if len(answer.nodes) or problem.clusters == 0:
+        assert problem.faults(answer.nodes) == []
+        assert answer.cost == pytest.approx(problem.cost_of(answer.nodes), abs=1e-12)
+        assert answer.cost >= best - slack
+        assert answer.status in (Status.OPTIMAL, Status.FEASIBLE)
+    else:
+        assert answer.cost == math.inf
+        assert answer.status in (Status.INFEASIBLE, Status.UNKNOWN)
+    assert answer.bound <= answer.cost
+    if answer.status is Status.OPTIMAL:
+        assert answer.cost == pytest.approx(best, abs=1e-6 * max(1.0, abs(best)))
+    if answer.status is Status.INFEASIBLE:
+        assert best == math.inf
+
+
+def test_each_solver_is_put_into_a_group() -> None:
+    assert set(SOLVERS) == PROVES | SEARCHES
+    assert all(SOLVERS[name].name == name and SOLVERS[name].summary for name in SOLVERS)
+
+
+def test_the_oracles_agree() -> None:
+    for case in CASES:
+        if case.problem.clusters <= 4:
+            assert optimum_by_product(case.problem) == pytest.approx(case.optimum)
+
+
+@pytest.mark.parametrize("solver", [name for name in SOLVERS if name != "exact"])
+@pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)
+def test_answers_bracket_the_optimum(solver: str, case: Case) -> None:
+    answer = solve(case.problem, solver, StopRule(iterations=200) if solver in SEARCHES else None)
+    judge(case.problem, answer, case.optimum)
+    assert answer.solver == solver
+    if solver in PROVES:
+        assert answer.status is (Status.OPTIMAL if math.isfinite(case.optimum) else Status.INFEASIBLE)
+        assert answer.stopped is StopReason.FINISHED
+
+
+@pytest.mark.parametrize("case", CASES[1::4], ids=lambda c: c.name)
+def test_the_model_brackets_the_optimum(case: Case) -> None:
+    answer = solve(case.problem, "exact")
+    judge(case.problem, answer, case.optimum)
+    assert answer.status is (Status.OPTIMAL if math.isfinite(case.optimum) else Status.INFEASIBLE)
+
+
+def test_local_search_finds_most_optima() -> None:
+    reached = [
+        solve(case.problem, "2opt", StopRule(iterations=300)).cost <= case.optimum + TOLERANCE
+        for case in CASES
+        if math.isfinite(case.optimum)
+    ]
+    assert np.mean(reached) > 0.9
+
+
+@EVERY
+def test_no_cluster(solver: str) -> None:
+    empty = OrderingProblem(np.zeros(0, dtype=np.int64), MatrixCosts(np.zeros((0, 0))))
+    answer = solve(empty, solver)
+    assert (answer.cost, answer.bound, answer.status) == (0.0, 0.0, Status.OPTIMAL)
+
+
+@EVERY
+def test_one_cluster(solver: str) -> None:
+    problem = OrderingProblem(
+        np.zeros(3, dtype=np.int64),
+        MatrixCosts(np.full((3, 3), math.inf)),
+        np.array([1.0, 2.0, math.inf]),
+        np.array([3.0, 1.0, 0.0]),
+        np.array([0.0, 0.5, 0.0]),
+    )
+    answer = solve(problem, solver)
+    assert answer.nodes.tolist() == [1]
+    assert answer.cost == answer.bound == 3.5
+    impossible = OrderingProblem(problem.cluster, problem.costs, np.full(3, math.inf))
+    assert solve(impossible, solver).status is Status.INFEASIBLE
+
+
+@EVERY
+def test_no_arcs_is_a_result(solver: str) -> None:
+    problem = OrderingProblem(np.arange(4), MatrixCosts(np.full((4, 4), math.inf)))
+    answer = solve(problem, solver, StopRule(iterations=50) if solver in SEARCHES else None)
+    assert len(answer.nodes) == 0
+    assert answer.status is (Status.INFEASIBLE if solver in PROVES else Status.UNKNOWN)
+
+
+@EVERY
+def test_all_points_in_one_place(solver: str) -> None:
+    problem = OrderingProblem(np.repeat(np.arange(5), 2), EuclidCosts(np.ones((10, 2)), np.ones((10, 2))))
+    answer = solve(problem, solver, StopRule(iterations=20) if solver in SEARCHES else None)
+    assert answer.cost == 0.0
+    assert problem.faults(answer.nodes) == []
+
+
+@EVERY
+@pytest.mark.parametrize("kind", ["matrix", "euclid"])
+def test_same_seed_same_answer(solver: str, kind: str) -> None:
+    problem = random_problem(kind, 7, 3, precedence=True, start=False, end=True)
+    answers = [solve(problem, solver, StopRule(iterations=50), seed=5) for _ in range(2)]
+    assert answers[0].nodes.tolist() == answers[1].nodes.tolist()
+    assert answers[0].cost == answers[1].cost
+
+
+@EVERY
+def test_cancel_ends_with_what_is_known(solver: str) -> None:
+    problem = strokes(9)
+    calls = []
+
+    def cancelled() -> bool:
+        calls.append(1)
+        return len(calls) > 3
+
+    given = solve(problem, "nn").nodes
+    answer = solve(
+        problem, solver, StopRule(cancelled=cancelled, iterations=10**9 if solver == "2opt" else None), 0, given
+    )
+    judge(problem, answer, optimum_of_strokes())
+    assert answer.stopped is StopReason.CANCELLED or answer.status is Status.OPTIMAL
+    assert len(answer.nodes) == 9
+    at_once = solve(problem, solver, StopRule(cancelled=lambda: True), 0, given)
+    assert at_once.stopped is StopReason.CANCELLED
+    assert at_once.seconds < 5
+
+
+def optimum_of_strokes() -> float:
+    return solve(strokes(9), "brute").cost
+
+
+@EVERY
+def test_target_ends_the_search(solver: str) -> None:
+    problem = strokes(9)
+    answer = solve(problem, solver, StopRule(target=1e6, iterations=10**9 if solver == "2opt" else None))
+    assert len(answer.nodes) == 9
+    assert answer.stopped is StopReason.TARGET or answer.status is Status.OPTIMAL
+
+
+@EVERY
+def test_never_worse_than_the_start(solver: str) -> None:
+    problem = strokes(9)
+    best = solve(problem, "brute")
+    answer = solve(problem, solver, StopRule(iterations=3) if solver in SEARCHES else None, start=best.nodes)
+    assert answer.cost <= best.cost + 1e-12
+    with pytest.raises(InputError, match="visited"):
+        solve(problem, solver, start=np.array([0]))
+
+
+@EVERY
+def test_progress_improves(solver: str) -> None:
+    seen: list[Progress] = []
+    answer = solve(strokes(8), solver, StopRule(iterations=20) if solver in SEARCHES else None, progress=seen.append)
+    assert seen
+    assert all(p.stage == "order" and p.bound <= p.cost for p in seen)
+    costs = [point.cost for point in answer.trace]
+    assert costs == sorted(costs, reverse=True)
+
+
+def test_iterations_are_counted() -> None:
+    for limit in (0, 1, 17):
+        assert solve(strokes(30), "2opt", StopRule(iterations=limit)).iterations == limit
+    assert solve(strokes(30), "2opt", StopRule(iterations=0)).cost <= solve(strokes(30), "nn").cost
+
+
+def test_time_limit() -> None:
+    answer = solve(strokes(60), "2opt", StopRule(seconds=0.3))
+    assert answer.stopped is StopReason.TIME
+    assert answer.seconds < 20
+    automatic = solve(strokes(60), "auto", StopRule(seconds=1.0))
+    assert automatic.status is Status.FEASIBLE
+    assert 0 < automatic.bound < automatic.cost
+    assert "2opt" in automatic.message
+
+
+def test_refusals_say_why() -> None:
+    large = strokes(200)
+    for name in ("brute", "exact"):
+        reason = SOLVERS[name].refusal(large)
+        assert reason
+        with pytest.raises(SolverError, match="at most"):
+            solve(large, name)
+    assert all(SOLVERS[name].refusal(large) is None for name in ("auto", "nn", "2opt"))
+
+
+def test_unknown_name_lists_the_known() -> None:
+    with pytest.raises(InputError, match="2opt") as caught:
+        solve(strokes(3), "best")
+    assert all(name in str(caught.value) for name in SOLVERS)
+
+
+def test_precedence_survives_a_long_search() -> None:
+    rng = np.random.default_rng(0)
+    pairs = [(int(a), int(b)) for a in range(60) for b in range(a + 1, 60) if rng.random() < 0.05]
+    problem = strokes(60)
+    problem = OrderingProblem(problem.cluster, problem.costs, precedence=np.array(pairs))
+    answer = solve(problem, "2opt", StopRule(iterations=2000))
+    assert problem.faults(answer.nodes) == []
+    assert answer.cost < 0.9 * solve(problem, "nn").cost
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)
+def test_lower_bound_is_one(case: Case) -> None:
+    assert lower_bound(case.problem) <= case.optimum + TOLERANCE * max(1.0, abs(case.optimum))
+
+
+@pytest.mark.parametrize("count", [1200, 1300])
+def test_lower_bound_of_large_problems(count: int) -> None:
+    """Both sides of the switch to the sparse bound."""
+    problem = strokes(count)
+    known = solve(problem, "nn").cost
+    bound = lower_bound(problem, StopRule(iterations=30))
+    assert 0.3 * known < bound < known
+
+
+def test_lower_bound_is_sharp_on_a_line() -> None:
+    places = np.column_stack([np.arange(20.0), np.zeros(20)])
+    problem = OrderingProblem(np.arange(20), EuclidCosts(places, places))
+    assert lower_bound(problem) == pytest.approx(19.0)
+
+
+def test_optimum_of_a_scaled_problem_scales() -> None:
+    problem = strokes(7, 4)
+    costs = problem.costs
+    assert isinstance(costs, EuclidCosts)
+    for factor in (1e-6, 1e6):
+        scaled = OrderingProblem(problem.cluster, EuclidCosts(costs.exits * factor, costs.entries * factor))
+        for name in ("exact", "brute"):
+            answer = solve(scaled, name)
+            assert answer.status is Status.OPTIMAL
+            assert answer.cost == pytest.approx(factor * optimum(problem), rel=1e-6)
