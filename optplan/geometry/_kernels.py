@@ -12,6 +12,8 @@ from optplan.domain.arrays import FloatArray
 TWO_PI = 2.0 * math.pi
 # An angle this close to a full turn is a rounding error of zero: unsnapped, a straight move becomes a full circle.
 SNAP = 1e-9
+TOUCHING = 1e-12
+"""Circles this close to touching, in radii, touch."""
 LSL, RSR, LSR, RSL, RLR, LRL = range(6)
 
 
@@ -21,6 +23,23 @@ def _mod(angle: float) -> float:
     if angle > TWO_PI - SNAP or angle < SNAP:
         return 0.0
     return angle
+
+
+@nb.njit("UniTuple(float64, 2)(float64, float64, float64, float64)", cache=True, nogil=True)
+def _same_side(first: float, total: float, straight: float, d: float) -> tuple[float, float]:
+    """Both arcs of LSL or RSR: the first as computed, the second what is left of the whole turning.
+
+    The shorter the straight part, the less its direction is known: arcs that are none but for that are snapped.
+    """
+    whole = _mod(total)
+    unknown = max(SNAP, 4e-15 * (1.0 + d) / straight) if straight > 1e-14 * (1.0 + d) else math.inf
+    first = first % TWO_PI
+    if first < unknown or first > TWO_PI - unknown or unknown > 1.0:
+        return 0.0, whole
+    second = (total - first) % TWO_PI
+    if second < unknown or second > TWO_PI - unknown:
+        return whole, 0.0
+    return first, second
 
 
 @nb.njit(
@@ -52,44 +71,28 @@ def dubins_shortest(
     t = p = q = 0.0
 
     # LSL
-    square = 2.0 + d * d - 2.0 * cab + 2.0 * d * (sa - sb)
-    if square > 1e-18:
-        angle = math.atan2(cb - ca, d + sa - sb)
-        bt = _mod(angle - a)
-        bq = _mod(b - angle)
-        bp = math.sqrt(square)
-    else:
-        bt = _mod(b - a)
-        bp = 0.0
-        bq = 0.0
+    bp = math.hypot(d + sa - sb, cb - ca)
+    bt, bq = _same_side(math.atan2(cb - ca, d + sa - sb) - a, b - a, bp, d)
     if bt + bp + bq < best:
         best, word, t, p, q = bt + bp + bq, LSL, bt, bp, bq
     # RSR
-    square = 2.0 + d * d - 2.0 * cab + 2.0 * d * (sb - sa)
-    if square > 1e-18:
-        angle = math.atan2(ca - cb, d - sa + sb)
-        bt = _mod(a - angle)
-        bq = _mod(angle - b)
-        bp = math.sqrt(square)
-    else:
-        bt = _mod(a - b)
-        bp = 0.0
-        bq = 0.0
+    bp = math.hypot(d - sa + sb, ca - cb)
+    bt, bq = _same_side(a - math.atan2(ca - cb, d - sa + sb), a - b, bp, d)
     if bt + bp + bq < best:
         best, word, t, p, q = bt + bp + bq, RSR, bt, bp, bq
     # LSR
-    square = -2.0 + d * d + 2.0 * cab + 2.0 * d * (sa + sb)
-    if square >= 0.0:
-        bp = math.sqrt(square)
+    apart = math.hypot(d + sa + sb, ca + cb)
+    if apart >= 2.0 - TOUCHING:
+        bp = math.sqrt(max(0.0, (apart - 2.0) * (apart + 2.0)))
         angle = math.atan2(-ca - cb, d + sa + sb) - math.atan2(-2.0, bp)
         bt = _mod(angle - a)
         bq = _mod(angle - b)
         if bt + bp + bq < best:
             best, word, t, p, q = bt + bp + bq, LSR, bt, bp, bq
     # RSL
-    square = -2.0 + d * d + 2.0 * cab - 2.0 * d * (sa + sb)
-    if square >= 0.0:
-        bp = math.sqrt(square)
+    apart = math.hypot(d - sa - sb, ca + cb)
+    if apart >= 2.0 - TOUCHING:
+        bp = math.sqrt(max(0.0, (apart - 2.0) * (apart + 2.0)))
         angle = math.atan2(ca + cb, d - sa - sb) - math.atan2(2.0, bp)
         bt = _mod(a - angle)
         bq = _mod(b - angle)
