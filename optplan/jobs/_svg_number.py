@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from itertools import islice
 from typing import Literal, NamedTuple
 
 from optplan.domain.errors import InputError, LimitError
@@ -96,7 +97,7 @@ def numbers(run: str, limit: int) -> list[float]:
     LimitError : more than `limit` of them
     InputError : one is not finite
     """
-    if len(run) > limit and sum(1 for _ in NUMBERS.finditer(run)) > limit:
+    if len(run) > limit and next(islice(NUMBERS.finditer(run), limit, None), None) is not None:
         raise LimitError(f"more than {limit} numbers in one attribute, as many as the limit of segments leaves")
     values = list(map(float, NUMBERS.findall(run)))
     if values and max(map(abs, values)) > LARGEST:

@@ -53,7 +53,7 @@ def read_svg(
         elements = tuple(walk.elements(root))
         notes = report.notes()
         if not elements:
-            left_out = "; ".join(f"{note.text} ({note.times})" for note in notes[:5])
+            left_out = "; ".join(f"{note.text} ({note.times})" for note in notes if note.kind == "ignored")
             raise InputError(
                 f"there is nothing to draw; left out: {left_out}" if left_out else "there is nothing to draw"
             )

@@ -109,7 +109,8 @@ def _mark(element: Element, tool: Tool, notes: list[Note]) -> Mark:
 
 def _last_point(element: Element) -> FloatArray:
     curve = element.curves[-1]
-    return curve.points[0 if curve.closed else -1]
+    point: FloatArray = curve.points[0 if curve.closed else -1]
+    return point
 
 
 def _levels(color: str) -> tuple[int, int, int]:
