@@ -79,12 +79,12 @@ def _curve(subpath: Subpath, matrix: Matrix, close_gap: float) -> tuple[Curve, b
     if len(points) < 2:
         return None
     closed, joined = subpath.closed, False
-    ends_meet = abs(points[0] - points[-1]) <= small
+    ends_meet = bool(abs(points[0] - points[-1]) <= small)
     if not closed and (len(points) > 3 or inner is not None):
         joined = not ends_meet and _nearly_closed(points, inner, close_gap)
         closed = joined or ends_meet
         # a rounding error of the file needs no segment of its own
-        ends_meet = ends_meet or (joined and abs(points[0] - points[-1]) <= SNAP * close_gap)
+        ends_meet = ends_meet or (joined and bool(abs(points[0] - points[-1]) <= SNAP * close_gap))
     if closed and ends_meet and len(points) > 2:
         points = points[:-1]
     elif closed and inner is not None:

@@ -8,6 +8,7 @@ from itertools import islice
 from typing import Literal, NamedTuple
 
 from optplan.domain.errors import InputError, LimitError
+from optplan.jobs.limits import MAX_SEGMENTS
 
 NUMBER = r"[-+]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][-+]?[0-9]++)?"
 NUMBERS = re.compile(NUMBER)
@@ -98,7 +99,7 @@ def numbers(run: str, limit: int) -> list[float]:
     InputError : one is not finite
     """
     if len(run) > limit and next(islice(NUMBERS.finditer(run), limit, None), None) is not None:
-        raise LimitError(f"more than {limit} numbers in one attribute, as many as the limit of segments leaves")
+        raise LimitError(f"more than {limit} numbers in one attribute: beyond the limit of {MAX_SEGMENTS} segments")
     values = list(map(float, NUMBERS.findall(run)))
     if values and max(map(abs, values)) > LARGEST:
         for match in NUMBERS.finditer(run):

@@ -117,7 +117,7 @@ def parse_tree(source: Source) -> etree._Element:
         events=("start", "end"),
         no_network=True,
         load_dtd=False,
-        resolve_entities=entities > 0,
+        resolve_entities="internal",  # type: ignore[arg-type] # the stubs know only bool
         huge_tree=not entities,
         encoding=source.encoding,
     )
