@@ -1,7 +1,7 @@
 """The ordering problem: a precedence-constrained generalised travelling-salesman path, and its solution.
 
-Clusters are strokes, nodes are their traversals. A path visits one node of every cluster; it begins at a start depot and
-ends at an end depot, whose arcs may all be free. TSP path, ATSP, GTSP and SOP are special cases.
+Clusters are strokes, nodes are their traversals. A path visits one node of every cluster; it begins at a start depot
+and ends at an end depot, whose arcs may all be free. TSP path, ATSP, GTSP and SOP are special cases.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ RATE_CHANGE = {"rad/s^2": 1.0, "rad/s2": 1.0, "deg/s^2": math.pi / 180}
 CURVATURE = {"1/m": 1.0, "1/mm": 1e3}
 SHARPNESS = {"1/m^2": 1.0, "1/m2": 1.0}
 
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s].*?)?\s*")
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)?\s*")
 
 
 def quantity(text: str | float, units: dict[str, float], default: str) -> float:

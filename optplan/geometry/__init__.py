@@ -1,1 +1,1 @@
-"""Curves, paths and polygons; knows no job and no robot."""
+"""Geometry that knows no job and no robot: curves, paths, Dubins words, polygons."""

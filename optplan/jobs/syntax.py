@@ -109,8 +109,8 @@ def _mark(element: Element, tool: Tool, notes: list[Note]) -> Mark:
 
 def _last_point(element: Element) -> FloatArray:
     curve = element.curves[-1]
-    point: FloatArray = curve.points[0 if curve.closed else -1]
-    return point
+    place: FloatArray = curve.points[0 if curve.closed else -1]
+    return place
 
 
 def _levels(color: str) -> tuple[int, int, int]:

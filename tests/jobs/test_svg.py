@@ -345,7 +345,7 @@ def test_lines_beside_curves_have_handles_at_thirds() -> None:
         (2.7, 11.66, None, True),
         (2.7, 5.0, None, False),
         (0.01, 5.0, None, True),
-        (2.7, 1.0, 3 * PX, True),
+        (2.7, 1.0, 3.0, True),
         (2.7, 11.66, 0.0, False),
         (9.0, 40.0, None, False),
     ],

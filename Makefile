@@ -1,0 +1,48 @@
+# make demo   plans a shipped drawing and says where the picture is
+# make test   lint, types, tests
+# make bench  timings: figure, target, met or not
+# Everything that is needed is installed into .venv (and uv into .tools when it is missing).
+
+UV := $(shell command -v uv || echo .tools/bin/uv)
+RUN := .venv/bin/
+export UV_PYTHON_DOWNLOADS := never
+# warnings of installed packages are not ours to fix
+export PYTHONWARNINGS :=
+
+.PHONY: demo test lint types tests bench format wheel clean
+
+demo: .venv/.ready
+	$(RUN)optplan demo drawing --output out/demo --force
+
+test: lint types tests
+
+lint: .venv/.ready
+	$(RUN)ruff check .
+	$(RUN)ruff format --check .
+
+types: .venv/.ready
+	$(RUN)mypy
+
+tests: .venv/.ready
+	$(RUN)pytest -n 2
+
+bench: .venv/.ready
+	$(RUN)python -m benchmarks
+
+format: .venv/.ready
+	$(RUN)ruff check --fix .
+	$(RUN)ruff format .
+
+wheel: .venv/.ready
+	$(UV) build --wheel --out-dir dist
+
+clean:
+	rm -rf .venv .tools .mypy_cache .pytest_cache .ruff_cache .hypothesis .numba_cache dist out
+
+# a system pip that refuses to install (PEP 668) still fills a folder of ours
+.tools/bin/uv:
+	python3 -m pip install --quiet --disable-pip-version-check --target .tools uv
+
+.venv/.ready: pyproject.toml uv.lock | $(UV)
+	$(UV) sync --frozen --quiet
+	@touch $@

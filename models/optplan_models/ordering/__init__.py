@@ -1,0 +1,1 @@
+"""Models of the ordering problem: a path through one node of each cluster."""

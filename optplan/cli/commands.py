@@ -1,0 +1,462 @@
+"""The commands. Parsing, doing and printing are kept apart; everything heavy is imported when a command runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from optplan.cli import output
+from optplan.cli.settings import (
+    Boundary,
+    CanvasSize,
+    CloseGap,
+    ConfigFile,
+    Corner,
+    Direction,
+    ElementFill,
+    Entries,
+    Inset,
+    Iterations,
+    Margin,
+    Metric,
+    RobotName,
+    Seed,
+    SolverName,
+    Spacing,
+    Start,
+    TimeLimit,
+    Tolerance,
+    TransitSpeed,
+    WorkSpeed,
+    config_text,
+    read_config,
+    settings_of,
+    tables_of,
+)
+from optplan.domain.errors import InputError
+
+if TYPE_CHECKING:
+    from optplan.domain.result import Plan
+
+USUAL_ROBOT = "beach-rake"
+DEMOS = {"drawing": "drawings/lion"}
+
+app = typer.Typer(
+    name="optplan",
+    help="Turns a surface job into a plan a robot can drive, and proves how good the plan is.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # plain help: rich and all it imports would double the time that --help takes
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+PlanFile = Annotated[Path, typer.Argument(help="A plan file (plan.json).", show_default=False)]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON for machines.")]
+Force = Annotated[bool, typer.Option("--force", "-f", help="Replace files that exist.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
+OutFile = Annotated[Path | None, typer.Option("--output", "-o", help="File to write.", show_default=False)]
+Exports = Annotated[list[str] | None, typer.Option("--export", "-e", help="Also write this format. Repeatable.")]
+Rest = Annotated[bool, typer.Option("--rest", help="Run the stages that follow, too.")]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from optplan import __version__
+
+        print(f"optplan {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Say which one.")]
+
+
+@app.callback()
+def _main(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Say which one.")
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command("plan")
+def plan_command(
+    job: Annotated[Path, typer.Argument(help="A drawing (.svg, .svgz) or a JSON job.", show_default=False)],
+    robot: RobotName = None,
+    out: Annotated[Path | None, typer.Option("--output", "-o", help="Folder; default: <job>-plan.")] = None,
+    export: Annotated[
+        list[str] | None, typer.Option("--export", "-e", help="Also write this format. Repeatable.")
+    ] = None,
+    config: ConfigFile = None,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+    print_config: Annotated[bool, typer.Option("--print-config", help="Print all settings and stop.")] = False,
+    canvas: CanvasSize = None,
+    margin: Margin = None,
+    tolerance: Tolerance = None,
+    close_gap: CloseGap = None,
+    direction: Direction = None,
+    spacing: Spacing = None,
+    inset: Inset = None,
+    boundary: Boundary = None,
+    fill: ElementFill = None,
+    solver: SolverName = None,
+    metric: Metric = None,
+    time_limit: TimeLimit = None,
+    iterations: Iterations = None,
+    seed: Seed = None,
+    start: Start = None,
+    entries: Entries = None,
+    corner: Corner = None,
+    work_speed: WorkSpeed = None,
+    transit_speed: TransitSpeed = None,
+) -> None:
+    """Plan a job: writes plan.json and a picture, checks the plan and prints the findings."""
+    flags = dict(locals())
+    base = read_config(config)
+    options = settings_of(base, flags)
+    chosen = robot or base.get("robot") or USUAL_ROBOT
+    if print_config:
+        print(config_text(options, chosen), end="")
+        return
+    _plan_and_write(job, chosen, options, out or Path(f"{job.stem}-plan"), export or [], force, quiet, json, close_gap)
+
+
+@app.command()
+def demo(
+    kind: Annotated[str, typer.Argument(help="drawing, or the name of a shipped instance.")] = "drawing",
+    robot: RobotName = None,
+    out: Annotated[Path | None, typer.Option("--output", "-o", help="Folder; default: optplan-demo.")] = None,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+) -> None:
+    """Plan a job that ships with optplan, in seconds."""
+    from optplan.instances import instance
+
+    file = instance(DEMOS.get(kind, kind))
+    folder = out
+    if folder is None:  # a demo never fails because there was one before, and never replaces it
+        folder, number = Path("optplan-demo"), 1
+        while folder.exists():
+            number += 1
+            folder = Path(f"optplan-demo-{number}")
+    options = settings_of({}, {})
+    _plan_and_write(file, robot or USUAL_ROBOT, options, folder, ["csv", "txt"], force, quiet, json, None)
+
+
+def _plan_and_write(
+    job: Path,
+    robot: str,
+    options: Any,
+    folder: Path,
+    export: list[str],
+    force: bool,
+    quiet: bool,
+    json: bool,
+    close_gap: float | None,
+) -> None:
+    import math
+
+    import optplan as op
+    from optplan.domain.stop import StopRule
+    from optplan.exports import FORMATS
+
+    unknown = [name for name in export if name not in FORMATS]
+    if unknown:
+        raise InputError(f"there is no format {unknown[0]!r}; expected one of {', '.join(FORMATS)}", "--export")
+    targets = [folder / "plan.json", folder / "picture.png", folder / "picture.svg"]
+    targets += [folder / f"plan{FORMATS[name].suffix}" for name in export]
+    for target in targets:  # find out before the work, not after it
+        if target.exists() and not force:
+            raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
+    machine = op.load_robot(robot)
+    order = options.order
+    with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
+        read = op.read(job, close_gap=close_gap)
+        rule = StopRule(
+            seconds=math.inf if order.seconds is None else order.seconds,
+            iterations=order.iterations,
+            cancelled=lambda: bool(wished),
+        )
+        plan = op.plan(read, machine, options, tell, rule)
+    op.save_plan(plan, targets[0], overwrite=force)
+    for picture in targets[1:3]:
+        op.draw(plan, picture, overwrite=force)
+    if plan.path is not None:
+        for name, target in zip(export, targets[3:], strict=True):
+            op.export_plan(plan, name, target, overwrite=force)
+    written = [str(target) for target in targets if target.exists()]
+    _tell(plan, written, json)
+
+
+def _tell(plan: Plan, written: list[str], json: bool) -> None:
+    """Print a finished plan; exit 1 unless it was verified."""
+    good = plan.report is not None and plan.report.ok
+    if json:
+        output.print_json({"ok": good, **output.plan_facts(plan), "files": written})
+    else:
+        output.print_notes(plan)
+        if plan.ordering is not None:
+            output.print_order(plan.ordering)
+        if plan.report is not None:
+            output.print_report(plan.report)
+        verdict = "planned and verified" if good else "NO VALID PLAN" if plan.path is None else "A CHECK FAILED"
+        print(f"{verdict}; written:")
+        for file in written:
+            print(f"  {file}")
+    if not good:
+        raise typer.Exit(1)
+
+
+def _stage(
+    stage: str, file: Path, out: Path | None, flags: dict[str, Any], rest: bool, force: bool, quiet: bool, json: bool
+) -> None:
+    """Run one stage (and the rest) of a plan file with changed settings, and write the plan."""
+    import math
+
+    from optplan.domain.stop import StopRule
+    from optplan.pipeline import plan_from, run_stage
+    from optplan.schema.plans import save_plan
+
+    target = out or file
+    if target.exists() and not force:
+        hint = "say --output for a new file, or --force to replace it"
+        raise InputError(f"exists already; {hint}", str(target))
+    earlier = _load(file, flags)
+    options = settings_of(tables_of(earlier.options), flags)
+    earlier = replace(earlier, options=options)
+    with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
+        rule = StopRule(
+            seconds=options.order.seconds or math.inf,
+            iterations=options.order.iterations,
+            cancelled=lambda: bool(wished),
+        )
+        run: Callable[..., Plan] = plan_from if rest else run_stage
+        made = run(earlier, stage, tell, rule)
+    save_plan(made, target, overwrite=force)
+    good = not (stage == "order" and made.visits is None) and (made.report is None or made.report.ok)
+    if json:
+        output.print_json({"ok": good, **output.plan_facts(made), "files": [str(target)]})
+    else:
+        _print_stage(made, stage)
+        print(f"written: {target}")
+    if not good:
+        raise typer.Exit(1)
+
+
+def _print_stage(plan: Plan, stage: str) -> None:
+    """What a stage has made, and the report when it got that far."""
+    from optplan.domain.path import RAISED
+
+    if stage == "cover" and plan.cover is not None:
+        output.print_notes(plan)
+        areas = f", {len(plan.cover.areas)} areas" if plan.cover.areas else ""
+        print(f"cover: {len(plan.cover.strokes)} strokes{areas}")
+    if plan.ordering is not None and stage in ("cover", "order"):
+        output.print_order(plan.ordering)
+    if plan.path is not None and plan.report is None:
+        down = float(plan.path.length[plan.path.tool != RAISED].sum())
+        up = float(plan.path.length.sum()) - down
+        print(f"path: {len(plan.path)} pieces, {down:.3f} m tool down, {up:.3f} m tool up")
+    if plan.trajectory is not None and plan.report is None:
+        print(f"time: {plan.trajectory.duration:.1f} s")
+    if plan.report is not None:
+        output.print_report(plan.report)
+
+
+def _load(file: Path, flags: dict[str, Any]) -> Plan:
+    """A plan file; for the first stage a job does too."""
+    import optplan as op
+    from optplan.domain.options import Options
+    from optplan.domain.result import Plan
+
+    robot = flags.get("robot")
+    if file.suffix.lower() in (".svg", ".svgz") and "robot" in flags:
+        return Plan(op.read(file), op.load_robot(robot or USUAL_ROBOT), Options())
+    plan = op.load_plan(file)
+    return plan if robot is None else replace(plan, robot=op.load_robot(robot))
+
+
+@app.command()
+def cover(
+    file: Annotated[Path, typer.Argument(help="A plan, or a drawing to begin with.", show_default=False)],
+    out: OutFile = None,
+    robot: RobotName = None,
+    rest: Rest = False,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+    canvas: CanvasSize = None,
+    margin: Margin = None,
+    tolerance: Tolerance = None,
+    direction: Direction = None,
+    spacing: Spacing = None,
+    inset: Inset = None,
+    boundary: Boundary = None,
+    fill: ElementFill = None,
+) -> None:
+    """Cover: from the job to strokes."""
+    _stage("cover", file, out, dict(locals()), rest, force, quiet, json)
+
+
+@app.command()
+def order(
+    file: PlanFile,
+    out: OutFile = None,
+    rest: Rest = False,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+    solver: SolverName = None,
+    metric: Metric = None,
+    time_limit: TimeLimit = None,
+    iterations: Iterations = None,
+    seed: Seed = None,
+    start: Start = None,
+    entries: Entries = None,
+) -> None:
+    """Order: which stroke after which, entered where."""
+    _stage("order", file, out, dict(locals()), rest, force, quiet, json)
+
+
+@app.command()
+def connect(
+    file: PlanFile,
+    out: OutFile = None,
+    rest: Rest = False,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+    metric: Metric = None,
+    corner: Corner = None,
+) -> None:
+    """Connect: the path along all strokes and between them."""
+    _stage("connect", file, out, dict(locals()), rest, force, quiet, json)
+
+
+@app.command()
+def time(
+    file: PlanFile,
+    out: OutFile = None,
+    rest: Rest = False,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+    work_speed: WorkSpeed = None,
+    transit_speed: TransitSpeed = None,
+) -> None:
+    """Time: the speed profile along the path."""
+    _stage("time", file, out, dict(locals()), rest, force, quiet, json)
+
+
+@app.command()
+def check(file: PlanFile, json: Json = False) -> None:
+    """Check a plan with the independent judge; exit 1 when a limit is broken."""
+    import optplan as op
+
+    report = op.verify(op.load_plan(file))
+    if json:
+        output.print_json(output.report_facts(report))
+    else:
+        output.print_report(report)
+        print("all checks passed" if report.ok else "A CHECK FAILED")
+    if not report.ok:
+        raise typer.Exit(1)
+
+
+@app.command()
+def show(
+    file: PlanFile,
+    out: Annotated[
+        Path | None, typer.Option("--output", "-o", help=".png, .svg or .pdf; default: beside the plan.")
+    ] = None,
+    dpi: Annotated[int, typer.Option(min=20, max=1200, help="Pixels per inch of a PNG.")] = 150,
+    force: Force = False,
+) -> None:
+    """Picture of a plan."""
+    import optplan as op
+
+    target = out or file.with_suffix(".png")
+    op.draw(op.load_plan(file), target, overwrite=force, dpi=dpi)
+    print(target)
+
+
+@app.command("export")
+def export_command(
+    file: PlanFile,
+    to: Annotated[str, typer.Option("--to", "-t", help="csv: points with time and tool; txt: lines 'x y tool'.")],
+    out: OutFile = None,
+    spacing: Annotated[str | None, typer.Option(help="Greatest distance between points, e.g. 5cm.")] = None,
+    force: Force = False,
+) -> None:
+    """Write a plan for another system."""
+    import optplan as op
+    from optplan.domain.units import length
+    from optplan.exports import FORMATS
+
+    if to not in FORMATS:
+        raise InputError(f"there is no format {to!r}; expected one of {', '.join(FORMATS)}", "--to")
+    target = out or file.with_suffix(FORMATS[to].suffix)
+    distance = None if spacing is None else length(spacing)
+    op.export_plan(op.load_plan(file), to, target, spacing=distance, overwrite=force)
+    print(target)
+
+
+@app.command()
+def robots(json: Json = False) -> None:
+    """The robots there are."""
+    import optplan as op
+
+    known = [op.load_robot(name) for name in op.robot_names()]
+    if json:
+        output.print_json([{"name": robot.name, "summary": robot.summary} for robot in known])
+    else:
+        output.print_table(("robot", ""), [(robot.name, robot.summary) for robot in known])
+
+
+@app.command()
+def solvers(json: Json = False) -> None:
+    """The solvers there are."""
+    from optplan.ordering import SOLVERS
+
+    if json:
+        output.print_json([{"name": solver.name, "summary": solver.summary} for solver in SOLVERS.values()])
+    else:
+        output.print_table(("solver", ""), [(solver.name, solver.summary) for solver in SOLVERS.values()])
+
+
+@app.command()
+def instances(json: Json = False) -> None:
+    """The jobs that ship with optplan."""
+    import optplan as op
+
+    known = [(name, str(op.instance(name))) for name in op.instance_names()]
+    if json:
+        output.print_json([{"name": name, "file": file} for name, file in known])
+    else:
+        output.print_table(("instance", "file"), known)
+
+
+@app.command()
+def schema(
+    of: Annotated[str, typer.Argument(help="plan, job, robot or options.")] = "plan",
+) -> None:
+    """JSON Schema of the files that optplan reads and writes."""
+    from pydantic import TypeAdapter
+
+    from optplan.schema.jobs import JobModel
+    from optplan.schema.options import OptionsModel
+    from optplan.schema.plans import PlanModel
+    from optplan.schema.robots import RobotModel
+
+    known: dict[str, Any] = {"plan": PlanModel, "job": JobModel, "robot": RobotModel, "options": OptionsModel}
+    if of not in known:
+        raise InputError(f"there is no schema of {of!r}; expected one of {', '.join(known)}")
+    output.print_json(TypeAdapter(known[of]).json_schema())

@@ -1,0 +1,182 @@
+"""Settings: defaults, then a configuration file, then flags; the later ones win."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from optplan.domain.errors import InputError
+
+if TYPE_CHECKING:
+    from optplan.domain.options import Options
+
+CONFIG = Path("optplan.toml")
+"""Configuration file that is read from the current folder when there is one."""
+
+RobotName = Annotated[str | None, typer.Option("--robot", "-r", help="Preset or robot file (.toml, .json).")]
+ConfigFile = Annotated[Path | None, typer.Option("--config", "-c", help="Settings file; default: ./optplan.toml.")]
+CloseGap = Annotated[
+    float | None,
+    typer.Option(help="Close lines whose ends are nearer than this, drawing units."),
+]
+CanvasSize = Annotated[str | None, typer.Option("--canvas", help="Canvas, e.g. 20x15 or '5 m x 400 cm'.")]
+Margin = Annotated[str | None, typer.Option(help="Kept free along the border, e.g. 50cm.")]
+Tolerance = Annotated[str | None, typer.Option(help="Greatest distance from a drawn curve, e.g. 2mm.")]
+Direction = Annotated[str | None, typer.Option(help="Direction of fill lines, degrees.")]
+Spacing = Annotated[str | None, typer.Option(help="Between fill lines, e.g. 40cm.")]
+Inset = Annotated[str | None, typer.Option(help="Of fill lines from the outline.")]
+Boundary = Annotated[
+    bool | None,
+    typer.Option("--boundary/--no-boundary", help="Drive the inset outline of areas too."),
+]
+ElementFill = Annotated[
+    list[str] | None,
+    typer.Option("--fill", help="Fill of one element: 'ID:direction=45,spacing=30cm,inset=10cm'. Repeatable."),
+]
+SolverName = Annotated[str | None, typer.Option("--solver", "-s", help="See: optplan solvers.")]
+Metric = Annotated[str | None, typer.Option(help="euclid, dubins or auto.")]
+TimeLimit = Annotated[str | None, typer.Option(help="For ordering, e.g. 10s or 2min.")]
+Iterations = Annotated[int | None, typer.Option(help="Limit of ordering; with a seed repeatable.")]
+Seed = Annotated[int | None, typer.Option(help="Of everything random.")]
+Start = Annotated[str | None, typer.Option(help="Where the robot stands: X,Y in metres.")]
+Entries = Annotated[int | None, typer.Option(help="Most entry vertices of a closed stroke.")]
+Corner = Annotated[str | None, typer.Option(help="Sharper vertices are corners, degrees.")]
+WorkSpeed = Annotated[str | None, typer.Option(help="With the tool down, m/s.")]
+TransitSpeed = Annotated[str | None, typer.Option(help="With the tool up, m/s.")]
+
+_PLACES = {
+    "margin": ("page", "margin"),
+    "tolerance": ("page", "tolerance"),
+    "direction": ("cover", "direction"),
+    "spacing": ("cover", "spacing"),
+    "inset": ("cover", "inset"),
+    "boundary": ("cover", "boundary"),
+    "solver": ("order", "solver"),
+    "metric": ("order", "metric"),
+    "time_limit": ("order", "seconds"),
+    "iterations": ("order", "iterations"),
+    "seed": ("order", "seed"),
+    "entries": ("order", "entries"),
+    "corner": ("connect", "corner"),
+    "work_speed": ("time", "work_speed"),
+    "transit_speed": ("time", "transit_speed"),
+}
+"""Flags that are one setting: their group and name."""
+
+
+def read_config(file: Path | None) -> dict[str, Any]:
+    """Settings of a file as plain tables: {"robot": ..., "page": {...}, ...}. Raises InputError."""
+    import tomllib
+
+    from optplan.schema.files import read_text
+
+    if file is None:
+        if not CONFIG.is_file():
+            return {}
+        file = CONFIG
+    try:
+        settings = tomllib.loads(read_text(file))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"is not TOML: {error}", str(file)) from None
+    robot = settings.get("robot")
+    if robot is not None and not isinstance(robot, str):
+        raise InputError(f"robot is {robot!r}; expected the name of a preset or a file", str(file))
+    _validated({key: value for key, value in settings.items() if key != "robot"}, str(file))
+    return settings
+
+
+def settings_of(base: dict[str, Any], flags: dict[str, Any]) -> Options:
+    """Options from plain tables and the flags that were given. Raises InputError."""
+    tables: dict[str, Any] = {key: dict(value) for key, value in base.items() if key != "robot"}
+    for flag, (group, name) in _PLACES.items():
+        if flags.get(flag) is not None:
+            tables.setdefault(group, {})[name] = flags[flag]
+    if flags.get("canvas") is not None:
+        width, height = _canvas(flags["canvas"])
+        tables.setdefault("page", {}).update(width=width, height=height)
+    if flags.get("start") is not None:
+        tables.setdefault("order", {})["start"] = _pair(flags["start"], "--start")
+    for text in flags.get("fill") or ():
+        id, fill = _element_fill(text)
+        tables.setdefault("cover", {}).setdefault("elements", {})[id] = fill
+    return _validated(tables, "settings")
+
+
+def tables_of(options: Options) -> dict[str, Any]:
+    """Plain tables of options, to be changed by flags."""
+    from optplan.schema.options import options_model
+
+    return options_model(options).model_dump(mode="json")
+
+
+def config_text(options: Options, robot: str) -> str:
+    """Options as the text of a configuration file; settings left to the program are comments."""
+    lines = [f'robot = "{robot}"']
+    for group, table in tables_of(options).items():
+        lines += ["", f"[{group}]"]
+        for name, value in table.items():
+            if name == "elements":
+                lines += [f'elements."{id}" = {_inline(fill)}' for id, fill in value.items()]
+            else:
+                lines.append(f"# {name} =" if value is None else f"{name} = {_toml(value)}")
+    return "\n".join(lines) + "\n"
+
+
+def _validated(tables: dict[str, Any], where: str) -> Options:
+    from pydantic import ValidationError
+
+    from optplan.schema.base import fault
+    from optplan.schema.options import OptionsModel, options_from
+
+    try:
+        model = OptionsModel.model_validate(tables)
+    except ValidationError as error:
+        raise fault(error, where) from None
+    return options_from(model)
+
+
+def _canvas(text: str) -> tuple[float, float]:
+    from optplan.domain.units import length
+
+    parts = re.split(r"\s*[x×]\s*", text.strip())
+    if len(parts) != 2:
+        raise InputError(f"{text!r} is no canvas; expected width x height, such as 20x15", "--canvas")
+    # a unit that stands only at the end holds for both
+    unit = re.sub(r"^[\d.eE+-]*\s*", "", parts[1])
+    first = parts[0] if re.search(r"[a-z]", parts[0]) else f"{parts[0]} {unit}".strip()
+    try:
+        return length(first), length(parts[1])
+    except InputError as error:
+        raise InputError(error.problem, "--canvas") from None
+
+
+def _pair(text: str, flag: str) -> tuple[str, str]:
+    parts = [part.strip() for part in text.split(",")]
+    if len(parts) != 2:
+        raise InputError(f"{text!r} is no place; expected X,Y", flag)
+    return parts[0], parts[1]
+
+
+def _element_fill(text: str) -> tuple[str, dict[str, str]]:
+    id, found, rest = text.rpartition(":")
+    pairs = [part.partition("=") for part in rest.split(",")]
+    if not (found and id and all(equals and name.strip() and value.strip() for name, equals, value in pairs)):
+        raise InputError(f"{text!r} is no fill; expected ID:direction=45,spacing=30cm,inset=10cm", "--fill")
+    return id, {name.strip(): value.strip() for name, _, value in pairs}
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    return repr(value)
+
+
+def _inline(table: dict[str, Any]) -> str:
+    return "{ " + ", ".join(f"{k} = {_toml(v)}" for k, v in table.items() if v is not None) + " }"

@@ -1,0 +1,1 @@
+"""Movements between strokes, and the whole path."""

@@ -1,0 +1,180 @@
+"""From chosen traversals to the path that is driven."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from optplan.connectors.families import metric_of, start_states, transit_radius
+from optplan.coverage.corners import least_radius
+from optplan.coverage.drawing import tolerance_of
+from optplan.domain.arrays import FloatArray
+from optplan.domain.options import Options
+from optplan.domain.path import RAISED, Path
+from optplan.domain.result import Cover
+from optplan.domain.robot import Robot
+from optplan.domain.stroke import Stroke, Traversals
+from optplan.geometry.dubins import dubins_path
+from optplan.geometry.paths import displacement
+from optplan.geometry.rounding import Pieces, rounded, wrapped
+
+COINCIDENT = 1e-9
+"""Two places nearer than this are one, m: no connector is driven between them."""
+
+
+def driven(stroke: Stroke, entry_vertex: int, reverse: bool, robot: Robot, options: Options) -> Pieces:
+    """The path of one traversal: lines, arcs and turns along a stroke of two points or more."""
+    points = stroke.points[:, :2]
+    if stroke.closed:
+        points = np.roll(points, -entry_vertex, axis=0)
+        points = np.concatenate([points, points[:1]])
+    if reverse:
+        points = points[::-1]
+    tolerance = tolerance_of(options.page, robot.tool)
+    return rounded(points, tolerance, least_radius(robot, options), options.connect.corner)
+
+
+class _Rows(NamedTuple):
+    """Columns of a path under construction: lists of arrays, one entry a run of pieces."""
+
+    start: list[FloatArray]
+    heading: list[FloatArray]
+    curvature: list[FloatArray]
+    length: list[FloatArray]
+    turn: list[FloatArray]
+    dwell: list[FloatArray]
+    tool: list[FloatArray]
+    stroke: list[FloatArray]
+
+    def add(self, pieces: Pieces, tool: FloatArray | int, stroke: int, dwell: float = 0.0) -> None:
+        count = len(pieces.length)
+        self.start.append(np.column_stack([pieces.start, np.zeros(count)]))
+        self.heading.append(pieces.heading)
+        self.curvature.append(pieces.curvature)
+        self.length.append(pieces.length)
+        self.turn.append(pieces.turn)
+        self.dwell.append(np.full(count, dwell))
+        self.tool.append(np.broadcast_to(tool, count))
+        self.stroke.append(np.full(count, stroke))
+
+
+def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | None = None) -> Path:
+    """The path that drives traversals in the order given, with connectors between them.
+
+    A robot that turns on the spot moves straight from stroke to stroke; one that does not drives Dubins paths of its
+    least radius at transit speed. The tool is raised on connectors, and while it turns at a corner.
+
+    Parameters
+    ----------
+    visits : (m,) chosen traversals in driving order
+    cover : the strokes they belong to, and the start point when the options name none
+    robot, options : who drives, and how
+
+    Raises
+    ------
+    InputError : a metric that this robot cannot have
+    """
+    options = options or Options()
+    metric = metric_of(robot, options)
+    radius = transit_radius(robot, options) if metric == "dubins" else 0.0
+    turns = not math.isinf(robot.mobility.turn_rate)
+    rows = _Rows([], [], [], [], [], [], [], [])
+    start = options.order.start or cover.start
+    here: FloatArray | None = None  # x, y, heading
+    if start is not None and len(visits):
+        first = visits.entry[:1, [0, 1, 3]]
+        sight = math.atan2(first[0, 1] - start[1], first[0, 0] - start[0])
+        heading = start_states(start, first, radius)[0][0] if metric == "dubins" else sight
+        here = np.array([*start, heading])
+    for row in range(len(visits)):
+        visit = visits[row]
+        stroke = cover.strokes[visit.stroke]
+        if stroke.is_stop:
+            there = np.array([*visit.entry[:2], 0.0 if here is None else here[2]])
+            pieces = _pieces([_turn(there, 0.0)])
+        else:
+            pieces = driven(stroke, visit.entry_vertex, visit.reverse, robot, options)
+            there = np.array([*pieces.start[0], pieces.heading[0]])
+        if here is not None:
+            rows.add(_connector(here, there, metric, radius, turns), RAISED, -1)
+        # pins that stay down while the robot turns sharply would draw a swirl
+        sharp = (pieces.length == 0) & (np.abs(pieces.turn) > options.connect.corner) & turns
+        tool = np.where(sharp, RAISED, stroke.tool)
+        if not (turns or stroke.is_stop):
+            tool, pieces = tool[pieces.length > 0], _without_turns(pieces)
+        rows.add(pieces, tool, visit.stroke, stroke.dwell)
+        here = _end(pieces)
+    return _path(rows)
+
+
+def _connector(here: FloatArray, there: FloatArray, metric: str, radius: float, turns: bool) -> Pieces:
+    if metric == "dubins":
+        return _dubins(here, there, radius)
+    dx, dy = there[:2] - here[:2]
+    distance = math.hypot(dx, dy)
+    if distance <= COINCIDENT:
+        return _pieces([_turn(here, _short(there[2] - here[2]))] if turns else [])
+    heading = math.atan2(dy, dx)
+    made: list[tuple[float, ...]] = [(here[0], here[1], heading, 0.0, distance, 0.0)]
+    if turns:
+        made.insert(0, _turn(here, _short(heading - here[2])))
+        made.append(_turn(np.array([*there[:2], heading]), _short(there[2] - heading)))
+    return _pieces(made)
+
+
+def _dubins(here: FloatArray, there: FloatArray, radius: float) -> Pieces:
+    path = dubins_path(here, there, radius)
+    made: list[tuple[float, ...]] = []
+    x, y, heading = here
+    for curvature, length in zip(path.curvatures, path.lengths, strict=True):
+        made.append((x, y, heading, curvature, length, 0.0))
+        dx, dy = displacement(*(np.array([value]) for value in (heading, curvature, 0.0, length)))
+        x, y, heading = x + dx[0], y + dy[0], heading + curvature * length
+    return _pieces(made)
+
+
+def _turn(at: FloatArray, angle: float) -> tuple[float, ...]:
+    return (at[0], at[1], at[2], 0.0, 0.0, angle)
+
+
+def _short(angle: float) -> float:
+    return float(wrapped(np.array([angle]))[0])
+
+
+def _pieces(made: list[tuple[float, ...]]) -> Pieces:
+    table = np.array(made, dtype=np.float64).reshape(-1, 6)
+    return Pieces(table[:, :2], table[:, 2], table[:, 3], table[:, 4], table[:, 5])
+
+
+def _without_turns(pieces: Pieces) -> Pieces:
+    keep = pieces.length > 0
+    return Pieces(*(column[keep] for column in pieces))
+
+
+def _end(pieces: Pieces) -> FloatArray:
+    last = [column[-1:] for column in pieces]
+    dx, dy = displacement(last[1], last[2], np.zeros(1), last[3])
+    return np.array([last[0][0, 0] + dx[0], last[0][0, 1] + dy[0], last[1][0] + last[2][0] * last[3][0] + last[4][0]])
+
+
+def _path(rows: _Rows) -> Path:
+    columns = [np.concatenate(column) if column else np.zeros(0) for column in rows]
+    start = columns[0].reshape(-1, 3)
+    heading, curvature, length, turn, dwell = columns[1:6]
+    tool, stroke = (column.astype(np.int64) for column in columns[6:])
+    keep = (length > 0) | (turn != 0) | (dwell > 0)
+    zero = np.zeros(int(keep.sum()))
+    return Path(
+        start[keep],
+        heading[keep],
+        zero,
+        curvature[keep],
+        zero,
+        length[keep],
+        turn[keep],
+        dwell[keep],
+        tool[keep],
+        stroke[keep],
+    )

@@ -1,0 +1,51 @@
+"""Strokes that a robot can drive in one go: split at corners where it may not turn on the spot."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from optplan.domain.options import Options
+from optplan.domain.robot import Robot
+from optplan.domain.stroke import Stroke
+from optplan.geometry.rounding import inner_vertices
+
+CREEP = 0.25
+"""Share of the work speed to which a robot slows down for a tight curve before it gives up following it."""
+
+
+def least_radius(robot: Robot, options: Options) -> float:
+    """Radius of the tightest arc the robot follows with its tool down, m."""
+    speed = options.time.work_speed or robot.mobility.work_speed
+    curvature = robot.mobility.curvature_limits(CREEP * speed).curvature
+    return 1 / curvature if curvature > 0 else math.inf
+
+
+def split_at_corners(strokes: list[Stroke], robot: Robot, options: Options, tolerance: float) -> list[Stroke]:
+    """Strokes without corners, for a robot that cannot turn on the spot; other robots get them as they are."""
+    if robot.mobility.turns_on_spot:
+        return strokes
+    radius = least_radius(robot, options)
+    return [part for stroke in strokes for part in _split(stroke, tolerance, radius, options.connect.corner)]
+
+
+def _split(stroke: Stroke, tolerance: float, radius: float, corner: float) -> list[Stroke]:
+    if len(stroke.points) < 3:
+        return [stroke]
+    sharp = np.flatnonzero(inner_vertices(stroke.points, stroke.closed, tolerance, radius, corner).corner)
+    if len(sharp) == 0:
+        return [stroke]
+    if stroke.closed:  # begin at a corner, and come back to it
+        points = np.roll(stroke.points, -int(sharp[0]), axis=0)
+        points = np.concatenate([points, points[:1]])
+        cuts = [0, *(sharp[1:] - sharp[0]).tolist(), len(points) - 1]
+    else:
+        points = stroke.points
+        cuts = [0, *(sharp + 1).tolist(), len(points) - 1]
+    return [
+        replace(stroke, id=f"{stroke.id}~{k}", points=points[a : b + 1], closed=False, entry=None)
+        for k, (a, b) in enumerate(pairwise(cuts), start=1)
+    ]

@@ -1,0 +1,222 @@
+"""A drawing's strokes: outlines as they are drawn, areas as parallel lines."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from optplan.coverage.corners import split_at_corners
+from optplan.coverage.placing import Line, canvas_of, placed, placement
+from optplan.coverage.zigzag import zigzag
+from optplan.domain.arrays import FloatArray
+from optplan.domain.errors import InputError, located
+from optplan.domain.job import Drawing, FillSettings, Note
+from optplan.domain.options import CoverOptions, Options, PageOptions
+from optplan.domain.path import RAISED
+from optplan.domain.progress import Progress, ProgressCallback
+from optplan.domain.result import Area, Cover
+from optplan.domain.robot import Robot, Tool
+from optplan.domain.stroke import Stroke
+from optplan.geometry.regions import region
+from optplan.jobs.syntax import Mark, interpret
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+LOST = 0.05
+"""Share of an area that may stay untouched without a notice: the corners of any fill."""
+REACHED = 0.8
+"""Share of an area that a tool setting has to reach to be the one that fills it."""
+OVERLAPPING = 0.9
+"""Where the inset outline is driven too, lines begin this many tool widths from the border."""
+MAX_STROKES = 100_000
+"""Most strokes that one plan may have."""
+
+
+def tolerance_of(page: PageOptions, tool: Tool) -> float:
+    """Greatest distance between a drawn curve and its polyline, m: as asked, or a twentieth of the narrowest mark."""
+    return page.tolerance or min(setting.width for setting in tool.settings[1:]) / 20
+
+
+def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: ProgressCallback) -> Cover:
+    """Strokes, areas, start point and precedence of a drawing on its canvas. Raises InputError; see `cover`."""
+    job = _with_settings(job, options.cover)
+    read = interpret(job, robot.tool)
+    drawn = [mark for mark in read.marks if mark.drawn]
+    if not drawn:
+        reason = "every element is white, without style, or a start point"
+        raise InputError(f"nothing in this drawing is to be drawn: {reason}", job.name)
+    canvas = canvas_of(options.page, robot)
+    with located(job.name):
+        where = placement([mark.element for mark in read.marks if mark.drawn or mark.start], canvas)
+    tolerance = tolerance_of(options.page, robot.tool)
+
+    strokes: list[Stroke] = []
+    areas: list[Area] = []
+    notes = [*read.notes, *_offset_note(robot)]
+    for done, mark in enumerate(drawn):
+        progress(Progress("cover", done / len(drawn), message=mark.element.id))
+        lines = placed(mark.element, where, tolerance)
+        if not lines:
+            notes.append(Note("ignored", mark.element.id, "has no extent on the canvas"))
+            continue
+        strokes += _outlines(mark, lines)
+        if mark.fill:
+            new, made = _filled(mark, lines, robot.tool, options.cover, notes)
+            strokes += new
+            areas += made
+        if len(strokes) > MAX_STROKES:
+            raise InputError(f"there are more than {MAX_STROKES} strokes; widen the fill spacing or split it", job.name)
+    strokes = split_at_corners(strokes, robot, options, tolerance)
+    if not strokes:
+        raise InputError("nothing in this drawing is to be drawn on this canvas", job.name)
+    travels = [k for k, stroke in enumerate(strokes) if stroke.tool == RAISED]
+    chain = tuple(pairwise(travels))
+    progress(Progress("cover", 1.0, message=f"{len(strokes)} strokes"))
+    start = None if read.start is None else where.apply(read.start[None, :])[0]
+    begin = None if start is None else (float(start[0]), float(start[1]))
+    return Cover(tuple(strokes), tuple(areas), chain, begin, canvas, tuple(notes))
+
+
+def _offset_note(robot: Robot) -> list[Note]:
+    tool = robot.tool
+    if tool.right == 0 and tool.ahead == 0:
+        return []
+    text = f"the plan is the path of the tool, {tool.right:g} m right and {tool.ahead:g} m ahead of the robot's middle"
+    return [Note("notice", robot.name, text)]
+
+
+def _with_settings(job: Drawing, options: CoverOptions) -> Drawing:
+    for id, settings in options.elements:
+        job = job.with_element(id, fill_settings=settings)
+    return job
+
+
+def _outlines(mark: Mark, lines: list[Line]) -> list[Stroke]:
+    if mark.outline is None:
+        return []
+    names = [mark.element.id] if len(lines) == 1 else [f"{mark.element.id}.{k}" for k in range(1, len(lines) + 1)]
+    return [
+        Stroke(
+            name,
+            line.points,
+            tool=mark.outline,
+            closed=line.closed and mark.outline != RAISED,
+            directed=mark.outline == RAISED,
+            entry=_entry(mark, line, name),
+            element=mark.element.id,
+            layer=mark.layer,
+        )
+        for name, line in zip(names, lines, strict=True)
+    ]
+
+
+def _entry(mark: Mark, line: Line, name: str) -> int | None:
+    entry: int | None = mark.element.entry
+    if entry is None:
+        return None
+    allowed = range(len(line.points)) if line.closed else (0, len(line.points) - 1)
+    if entry not in allowed:
+        raise InputError(f"must be entered at vertex {entry}; expected one of {allowed}", name)
+    return entry
+
+
+def _filled(
+    mark: Mark, lines: list[Line], tool: Tool, options: CoverOptions, notes: list[Note]
+) -> tuple[list[Stroke], list[Area]]:
+    element = mark.element
+    polygons, crossed = region([line.points for line in lines], element.fill_rule)
+    if crossed:
+        notes.append(Note("changed", element.id, f"crosses itself; filled by the {element.fill_rule.value} rule"))
+    if not polygons:
+        notes.append(Note("ignored", element.id, "its fill encloses no area"))
+    strokes: list[Stroke] = []
+    areas: list[Area] = []
+    for polygon in polygons:
+        setting = _fitting(polygon, tool)
+        if setting != tool.fill:
+            text = f"too narrow for {tool.settings[tool.fill].name!r}: filled with {tool.settings[setting].name!r}"
+            notes.append(Note("changed", element.id, text))
+        width = tool.settings[setting].width
+        asked = _asked(element.fill_settings, options, width)
+        with located(element.id):
+            new, kept = _fill_polygon(polygon, asked, width, options.boundary)
+        if kept < asked.inset:
+            text = f"too narrow for lines {asked.inset:.3g} m inside its outline; they keep {kept:.3g} m"
+            notes.append(Note("changed", element.id, text))
+        rings = [polygon.exterior, *polygon.interiors]
+        area = Area(element.id, tuple(np.array(ring.coords)[:-1] for ring in rings), setting)
+        lost = _lost(area, new, width)
+        if lost > LOST:
+            text = f"{100 * lost:.0f} % of an area stays untouched: corners and places too narrow for the tool"
+            notes.append(Note("notice", element.id, text))
+        areas.append(area)
+        strokes += [replace(stroke, tool=setting) for stroke in new]
+    named = [
+        replace(stroke, id=f"{element.id}/fill.{k}", element=element.id, layer=mark.layer)
+        for k, stroke in enumerate(strokes, start=1)
+    ]
+    return named, areas
+
+
+def _fitting(polygon: Polygon, tool: Tool) -> int:
+    """The widest setting, up to the one that fills areas, that reaches most of a polygon."""
+    usual = tool.settings[tool.fill].width
+    narrower = [k for k in range(1, len(tool.settings)) if tool.settings[k].width <= usual]
+    by_width = sorted(narrower, key=lambda k: -tool.settings[k].width)
+    for k in by_width:
+        half = tool.settings[k].width / 2
+        if polygon.buffer(-half, join_style="mitre").buffer(half, join_style="mitre").area >= REACHED * polygon.area:
+            return k
+    return by_width[-1]
+
+
+def _asked(own: FillSettings, options: CoverOptions, width: float) -> _Asked:
+    usual_inset = OVERLAPPING * width if options.boundary else width / 2
+    return _Asked(
+        options.direction if own.direction is None else own.direction,
+        own.spacing or options.spacing or width,
+        next((inset for inset in (own.inset, options.inset) if inset is not None), usual_inset),
+    )
+
+
+class _Asked(NamedTuple):
+    """Fill settings with every choice made: rad, m, m."""
+
+    direction: float
+    spacing: float
+    inset: float
+
+
+def _fill_polygon(polygon: Polygon, asked: _Asked, width: float, boundary: bool) -> tuple[list[Stroke], float]:
+    """Strokes of one polygon, and the inset that its lines keep, m."""
+    import shapely
+
+    strokes = []
+    if boundary:
+        for part in shapely.get_parts(polygon.buffer(-width / 2, join_style="mitre")):
+            for ring in (part.exterior, *part.interiors):
+                strokes.append(Stroke("", _apart(np.array(ring.coords)[:-1]), closed=True))
+    if strokes and polygon.buffer(-asked.inset, join_style="mitre").is_empty:
+        return strokes, asked.inset  # the ring has done it all
+    fill = zigzag(polygon, asked.direction, asked.spacing, asked.inset)
+    return [*strokes, *(Stroke("", _apart(points)) for points in fill.strokes)], fill.inset
+
+
+def _apart(points: FloatArray) -> FloatArray:
+    keep = np.concatenate([[True], np.any(np.diff(points, axis=0) != 0, axis=1)])
+    kept: FloatArray = points[keep]
+    return kept
+
+
+def _lost(area: Area, strokes: list[Stroke], width: float) -> float:
+    """Share of an area that the marks of its fill leave untouched."""
+    import shapely
+
+    wanted = shapely.Polygon(area.rings[0], area.rings[1:])
+    lines = [shapely.LineString(stroke.closed_points) for stroke in strokes]
+    done = shapely.union_all(shapely.buffer(lines, width / 2, quad_segs=4))
+    return float(shapely.difference(wanted, done).area / wanted.area)

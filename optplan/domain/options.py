@@ -1,0 +1,136 @@
+"""The settings of a plan, a group for each stage. None leaves a choice to the robot or the program."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from optplan.domain.errors import InputError
+from optplan.domain.job import FillSettings
+
+METRICS = ("auto", "euclid", "dubins")
+
+
+@dataclass(frozen=True)
+class PageOptions:
+    """How a drawing is put on its canvas.
+
+    Parameters
+    ----------
+    width, height, margin : of the canvas, m; None takes the robot's canvas; with neither the drawing keeps its size
+    tolerance : greatest distance between a drawn curve and its polyline, m; None: a twentieth of the narrowest mark
+    """
+
+    width: float | None = None
+    height: float | None = None
+    margin: float | None = None
+    tolerance: float | None = None
+
+    def __post_init__(self) -> None:
+        _above_zero("page", width=self.width, height=self.height, tolerance=self.tolerance)
+        if self.margin is not None and not (math.isfinite(self.margin) and self.margin >= 0):
+            raise InputError(f"page margin is {self.margin} m; expected 0 or more")
+
+
+@dataclass(frozen=True)
+class CoverOptions:
+    """How areas are filled and lines are prepared.
+
+    Parameters
+    ----------
+    direction : of the fill lines, rad from the x axis
+    spacing : between fill lines, m; None: the width of the tool
+    inset : of the lines from the outline, m; None: what fits the boundary, or half the width of the tool without one
+    boundary : whether the outline, half a tool width inside, is driven too: it gives areas a crisp edge
+    elements : settings of single elements, by id; they win over the ones above
+    """
+
+    direction: float = 0.0
+    spacing: float | None = None
+    inset: float | None = None
+    boundary: bool = True
+    elements: tuple[tuple[str, FillSettings], ...] = ()
+
+    def __post_init__(self) -> None:
+        FillSettings(self.direction, self.spacing, self.inset)
+
+
+@dataclass(frozen=True)
+class OrderOptions:
+    """How the strokes are ordered.
+
+    Parameters
+    ----------
+    solver : a name from `optplan.ordering.SOLVERS`, or "auto"
+    metric : "euclid", "dubins", or "auto": what the robot's mobility asks for
+    seconds, iterations : stop rule; None sets no limit beyond the solver's own
+    seed : of everything random
+    start : (x, y) m where the robot stands, or None for the drawing's own start point, or a free choice
+    entries : greatest number of vertices at which a closed stroke may be entered; None: every vertex
+    """
+
+    solver: str = "auto"
+    metric: str = "auto"
+    seconds: float | None = None
+    iterations: int | None = None
+    seed: int = 0
+    start: tuple[float, float] | None = None
+    entries: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.metric not in METRICS:
+            raise InputError(f"there is no metric {self.metric!r}; expected one of {', '.join(METRICS)}")
+        _above_zero("order", seconds=self.seconds)
+        if self.iterations is not None and self.iterations < 0:
+            raise InputError(f"order iterations is {self.iterations}; expected 0 or more")
+        if not 0 <= self.seed < 2**31:
+            raise InputError(f"order seed is {self.seed}; expected 0..2^31 - 1")
+        if self.start is not None and not all(map(math.isfinite, self.start)):
+            raise InputError(f"order start is {self.start}; expected two finite numbers of metres")
+        if self.entries is not None and self.entries < 1:
+            raise InputError(f"order entries is {self.entries}; expected 1 or more")
+
+
+@dataclass(frozen=True)
+class ConnectOptions:
+    """How strokes are driven and joined.
+
+    Parameters
+    ----------
+    corner : deflection above which a vertex of a stroke is a corner, rad: the robot stops there and turns, or, when it
+        cannot, the stroke is split. Gentler vertices are rounded by arcs that stay within the page tolerance.
+    """
+
+    corner: float = math.radians(30)
+
+    def __post_init__(self) -> None:
+        if not 0 < self.corner <= math.pi:
+            raise InputError(f"corner is {self.corner} rad; expected more than 0 and at most pi")
+
+
+@dataclass(frozen=True)
+class TimeOptions:
+    """Speeds, m/s; None takes the robot's."""
+
+    work_speed: float | None = None
+    transit_speed: float | None = None
+
+    def __post_init__(self) -> None:
+        _above_zero("time", work_speed=self.work_speed, transit_speed=self.transit_speed)
+
+
+@dataclass(frozen=True)
+class Options:
+    """All settings of a plan."""
+
+    page: PageOptions = field(default_factory=PageOptions)
+    cover: CoverOptions = field(default_factory=CoverOptions)
+    order: OrderOptions = field(default_factory=OrderOptions)
+    connect: ConnectOptions = field(default_factory=ConnectOptions)
+    time: TimeOptions = field(default_factory=TimeOptions)
+
+
+def _above_zero(group: str, **values: float | None) -> None:
+    for name, value in values.items():
+        if value is not None and not (math.isfinite(value) and value > 0):
+            raise InputError(f"{group} {name} is {value}; expected a finite number above 0")

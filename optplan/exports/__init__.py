@@ -1,0 +1,85 @@
+"""Plans as files that other systems read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from optplan.domain.errors import InputError
+
+if TYPE_CHECKING:
+    from optplan.domain.result import Plan
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format.
+
+    Parameters
+    ----------
+    name, summary : for people
+    suffix : of its files
+    write : plan and point spacing (m) -> text
+    """
+
+    name: str
+    summary: str
+    suffix: str
+    write: Callable[[Plan, float], str]
+
+
+def _csv(plan: Plan, spacing: float) -> str:
+    from optplan.exports.points import csv_text
+
+    return csv_text(plan, spacing)
+
+
+def _txt(plan: Plan, spacing: float) -> str:
+    from optplan.exports.points import points_text
+
+    return points_text(plan, spacing)
+
+
+FORMATS = {
+    form.name: form
+    for form in (
+        Format("csv", "equally spaced points with time, speed, heading, curvature and tool state", ".csv", _csv),
+        Format("txt", "lines 'x y tool', y down, a blank line at every turn on the spot", ".txt", _txt),
+    )
+}
+"""What `export_plan` writes, by name."""
+
+
+def export_plan(
+    plan: Plan, to: str, file: str | Path, *, spacing: float | None = None, overwrite: bool = False
+) -> None:
+    """Write a plan for another system.
+
+    Parameters
+    ----------
+    plan : with a path
+    to : name of a format in `FORMATS`
+    file : where to
+    spacing : greatest distance between points, m; default 5 cm, or a hundredth of a smaller canvas
+    overwrite : whether an existing file may be replaced
+
+    Raises
+    ------
+    InputError : an unknown format, a plan without a path, a file that exists or cannot be written
+    """
+    from optplan.schema.files import write_atomically
+
+    if to not in FORMATS:
+        raise InputError(f"there is no format {to!r}; expected one of {', '.join(FORMATS)}")
+    text = FORMATS[to].write(plan, usual_spacing(plan) if spacing is None else spacing)
+    write_atomically(Path(file), text, overwrite=overwrite)
+
+
+def usual_spacing(plan: Plan) -> float:
+    """Point spacing for a plan of its size, m."""
+    from optplan.exports.points import SPACING
+
+    canvas = None if plan.cover is None else plan.cover.canvas
+    return SPACING if canvas is None else min(SPACING, min(canvas.width, canvas.height) / 100)

@@ -1,0 +1,39 @@
+"""Jobs that ship with optplan."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from optplan.domain.errors import InputError
+
+
+def _folder() -> Path:
+    """Where they are: in the installed package, or beside it in a checkout."""
+    package = Path(__file__).parent
+    shipped = package / "_data" / "instances"
+    return shipped if shipped.is_dir() else package.parent / "instances"
+
+
+def instance_names() -> tuple[str, ...]:
+    """Names of all shipped jobs, such as "drawings/lion", sorted."""
+    folder = _folder()
+    files = [file for file in folder.glob("*/*") if file.suffix in (".svg", ".json")]
+    return tuple(sorted(file.relative_to(folder).with_suffix("").as_posix() for file in files))
+
+
+def instance(name: str) -> Path:
+    """File of a shipped job.
+
+    Parameters
+    ----------
+    name : such as "drawings/lion", or just "lion"
+
+    Raises
+    ------
+    InputError : there is none of that name
+    """
+    matches = [known for known in instance_names() if name in (known, known.split("/", 1)[1])]
+    if len(matches) != 1:
+        raise InputError(f"there is no instance {name!r}; expected one of {', '.join(instance_names())}")
+    file = _folder() / matches[0]
+    return next(candidate for suffix in (".svg", ".json") if (candidate := file.with_suffix(suffix)).exists())

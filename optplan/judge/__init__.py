@@ -1,0 +1,93 @@
+"""The independent judge: measures what a plan does, with none of the code that made it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from optplan.domain.errors import InputError
+from optplan.domain.path import RAISED, Path
+from optplan.domain.report import Check, Report
+from optplan.domain.result import Plan
+from optplan.judge import _continuity, _coverage, _motion, _ordering, _strokes
+from optplan.judge._findings import deviation_limit, unchecked
+from optplan.judge._integrate import integrate
+from optplan.judge._speeds import speeds
+
+__all__ = ["verify"]
+
+_COVER_CHECKS = ("strokes", "deviation", "precedence")
+
+
+def verify(plan: Plan) -> Report:
+    """Measure a plan and hold it against its robot's limits.
+
+    The path is taken as that of the tool's middle. Sections that a plan does not have yet are not judged; the checks
+    that need them are in the report all the same, with a note.
+
+    Raises
+    ------
+    InputError : the plan has no path (a `LimitError` when the path curls beyond all measure)
+    """
+    if plan.path is None:
+        raise InputError("the plan has no path yet; run connect first")
+    path, robot, options, cover = plan.path, plan.robot, plan.options, plan.cover
+    limit = deviation_limit(robot, options)
+    samples = integrate(path, limit / 100)
+    profile = None if plan.trajectory is None else speeds(path, plan.trajectory)
+
+    steps, orders = _continuity.curvature_steps(path, samples, profile)
+    checks: list[Check] = [
+        _continuity.gaps(path, samples),
+        _continuity.headings(path, samples, robot, profile),
+        _continuity.curvature(path, robot, options, profile),
+        steps,
+    ]
+    figures = [*_lengths(path), *orders]
+    areas: list[tuple[str, float, str]] = []
+    exact = np.zeros(0, dtype=bool)
+    if cover is None:
+        checks += unchecked(_COVER_CHECKS, "the plan has no strokes")
+    else:
+        done, deviation, exact = _strokes.strokes(path, samples, cover, limit)
+        checks += [done, deviation, _strokes.precedence(path, cover)]
+    if plan.visits is None:
+        checks += unchecked(["visits"], "the plan does not say which ways of driving were chosen")
+    else:
+        checks.append(_strokes.visits(path, samples, plan.visits))
+    checks.append(_strokes.tool(path, robot))
+    if cover is None:
+        checks += unchecked(["canvas", "margin", *_coverage.NAMES], "the plan has no strokes")
+    else:
+        checks += _strokes.canvas(path, samples, cover)
+        covered, areas = _coverage.coverage(path, samples, cover, robot, limit, exact)
+        checks += covered
+    if plan.trajectory is None or profile is None:
+        checks += unchecked(_motion.NAMES, "the plan has no speeds")
+    else:
+        checks += _motion.motion(path, plan.trajectory, profile, robot, options)
+        figures += _motion.durations(path, plan.trajectory, profile)
+    figures += areas
+    if plan.ordering is None:
+        checks += unchecked(["bound", "cost"], "the plan does not say how it was ordered")
+    else:
+        checks += [_ordering.bound(plan.ordering), _ordering.cost(plan.ordering, path, robot, options)]
+        claims = [("bound", plan.ordering.bound, "m"), ("gap", plan.ordering.gap, "")]
+        figures += [claim for claim in claims if math.isfinite(claim[1])]
+    return Report(tuple(checks), tuple(figures))
+
+
+def _lengths(path: Path) -> list[tuple[str, float, str]]:
+    """What is driven, in metres and pieces."""
+    down, between = path.tool > RAISED, path.stroke < 0
+    turning = path.is_stop & (path.turn != 0)
+    return [
+        ("strokes", float(len(_strokes.runs(path))), ""),
+        ("pieces", float(len(path)), ""),
+        ("tool-down", float(path.length[down].sum()), "m"),
+        ("tool-up", float(path.length[~down & between].sum()), "m"),
+        ("travel strokes", float(path.length[~down & ~between].sum()), "m"),
+        ("turns", float(turning.sum()), ""),
+        ("turned", float(np.abs(path.turn).sum()), "rad"),
+    ]

@@ -1,0 +1,58 @@
+"""What the solver claimed, against what was really connected."""
+
+from __future__ import annotations
+
+import math
+
+from optplan.domain.options import Options
+from optplan.domain.ordering import Ordering, Status
+from optplan.domain.path import Path
+from optplan.domain.report import Check, Verdict
+from optplan.domain.robot import Robot
+from optplan.judge._findings import RELATIVE, finite, held, noted
+
+_MOST_EXTRA = 0.05
+"""Share of the strokes' length that the chosen ways may be longer than the cheapest ones, where headings count."""
+
+
+def bound(ordering: Ordering) -> Check:
+    """The bound may not pass the cost, and an optimum needs a bound that meets it."""
+    cost, lower = ordering.cost, ordering.bound
+    slack = RELATIVE * max(abs(cost), 1e-3) if math.isfinite(cost) else 0.0
+    optimal = ordering.status is Status.OPTIMAL
+    if math.isinf(lower) and lower < 0 and not optimal:
+        return noted("bound", 0.0, "m", "Nothing is proved: there is no lower bound.")
+    detail = f"The order is at most {max(ordering.gap, 0):.2%} longer than the best one."
+    check = held("bound", finite(lower), finite(cost), "m", detail=detail, slack=slack)
+    if check.verdict is Verdict.FAILED:
+        return held("bound", finite(lower), finite(cost), "m", detail="The lower bound is above the cost.", slack=slack)
+    if optimal and not cost - lower <= slack:
+        detail = f"The order is called optimal with a gap of {ordering.gap:.3g}."
+        return Check("bound", Verdict.FAILED, finite(lower), finite(cost), "m", None, detail)
+    return check
+
+
+def cost(ordering: Ordering, path: Path, robot: Robot, options: Options) -> Check:
+    """Metres between strokes, against the cost that the solver reported for them.
+
+    Where headings count, the chosen ways may be a little longer than their strokes' cheapest ones, which the cost
+    includes and a plan does not list; so the cost may be that much higher, but never lower.
+    """
+    driven = float(path.length[path.stroke < 0].sum())
+    claimed = ordering.cost
+    slack = RELATIVE * max(driven, 1e-3)
+    metric = options.order.metric
+    asked = "dubins" if robot.heading_counts else "euclid"
+    if metric not in ("auto", asked):
+        return noted("cost", driven, "m", f"The order was chosen by the metric {metric}, not by what is driven.")
+    more = claimed - driven
+    if robot.heading_counts and slack < more <= _MOST_EXTRA * float(path.length[path.stroke >= 0].sum()):
+        return noted("cost", driven, "m", f"The cost has {more:.4g} m on top: ways longer than the cheapest ones.")
+    good = abs(more) <= slack
+    detail = (
+        "The path between strokes is as long as the solver said."
+        if good
+        else (f"The path between strokes is {driven:.9g} m long, the solver said {finite(claimed):.9g} m.")
+    )
+    verdict = Verdict.PASSED if good else Verdict.FAILED
+    return Check("cost", verdict, driven, finite(claimed), "m", None, detail)

@@ -1,0 +1,136 @@
+"""From a job to a verified plan."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from optplan.connectors.driving import connect
+from optplan.coverage import cover
+from optplan.domain.errors import InputError
+from optplan.domain.job import Job
+from optplan.domain.options import Options
+from optplan.domain.progress import Progress, ProgressCallback, silent
+from optplan.domain.result import Plan
+from optplan.domain.robot import Robot
+from optplan.domain.stop import StopRule
+from optplan.judge import verify
+from optplan.ordering import solve
+from optplan.problem import ordering_problem, traversals
+from optplan.robots import load_robot
+from optplan.timing.trapezoid import profile
+
+STAGES = ("cover", "order", "connect", "time", "verify")
+"""What a plan goes through, in order."""
+
+
+def plan(
+    job: Job,
+    robot: str | Path | Robot = "beach-rake",
+    options: Options | None = None,
+    progress: ProgressCallback | None = None,
+    stop: StopRule | None = None,
+) -> Plan:
+    """Plan a job from beginning to end.
+
+    Parameters
+    ----------
+    job : what is to be done, from `optplan.read`
+    robot : name of a preset, path of a robot file, or a robot
+    options : settings of every stage
+    progress : called with what each stage has reached
+    stop : when ordering stops; default: what the options say
+
+    Returns
+    -------
+    a plan with all its sections; a plan whose ordering found nothing ends there
+
+    Raises
+    ------
+    InputError : the job, the robot or the options are wrong
+    SolverError : the solver that was asked for does not take this problem
+    """
+    return plan_from(Plan(job, load_robot(robot), options or Options()), "cover", progress, stop)
+
+
+def plan_from(
+    earlier: Plan, stage: str, progress: ProgressCallback | None = None, stop: StopRule | None = None
+) -> Plan:
+    """Plan again from a stage on, keeping what comes before it.
+
+    Parameters
+    ----------
+    earlier : a plan that has the sections before `stage`; its options may have been replaced
+    stage : one of `STAGES`
+
+    Raises
+    ------
+    InputError : an unknown stage, or a section before it is missing
+    SolverError : the solver that was asked for does not take this problem
+    """
+    if stage not in STAGES:
+        raise InputError(f"there is no stage {stage!r}; expected one of {', '.join(STAGES)}")
+    tell = progress or silent
+    done = earlier
+    for name in STAGES[STAGES.index(stage) :]:
+        tell(Progress(name, 0.0))
+        done = _STEPS[name](done, tell, stop)
+        tell(Progress(name, 1.0))
+        if done.ordering is not None and done.visits is None:
+            break  # no plan found: a result, not an error
+    return done
+
+
+def run_stage(
+    earlier: Plan, stage: str, progress: ProgressCallback | None = None, stop: StopRule | None = None
+) -> Plan:
+    """One stage alone; what depended on its earlier result is left out. Raises like `plan_from`."""
+    if stage not in STAGES:
+        raise InputError(f"there is no stage {stage!r}; expected one of {', '.join(STAGES)}")
+    return _STEPS[stage](earlier, progress or silent, stop)
+
+
+def _cover(before: Plan, progress: ProgressCallback, _: StopRule | None) -> Plan:
+    made = cover(before.job, before.robot, before.options, progress)
+    return Plan(before.job, before.robot, before.options, made)
+
+
+def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> Plan:
+    if before.cover is None:
+        raise InputError("the plan has no strokes yet; run the stage cover first")
+    job, robot, options = before.job, before.robot, before.options
+    ways = traversals(before.cover.strokes, robot, options)
+    problem = ordering_problem(ways, before.cover, robot, options)
+    order = options.order
+    rule = stop or StopRule(seconds=order.seconds or math.inf, iterations=order.iterations)
+    ordering = solve(problem, order.solver, rule, order.seed, progress=progress)
+    visits = ways.take(ordering.nodes) if math.isfinite(ordering.cost) else None
+    return Plan(job, robot, options, before.cover, ordering, visits)
+
+
+def _connect(before: Plan, *_: object) -> Plan:
+    if before.cover is None or before.visits is None:
+        raise InputError("the plan has no order yet; run the stage order first")
+    path = connect(before.visits, before.cover, before.robot, before.options)
+    return replace(before, path=path, trajectory=None, report=None)
+
+
+def _time(before: Plan, *_: object) -> Plan:
+    if before.path is None:
+        raise InputError("the plan has no path yet; run the stage connect first")
+    return replace(before, trajectory=profile(before.path, before.robot, before.options), report=None)
+
+
+def _verify(before: Plan, *_: object) -> Plan:
+    return replace(before, report=verify(before))
+
+
+_STEPS: dict[str, Callable[[Plan, ProgressCallback, StopRule | None], Plan]] = {
+    "cover": _cover,
+    "order": _order,
+    "connect": _connect,
+    "time": _time,
+    "verify": _verify,
+}

@@ -1,0 +1,252 @@
+"""One picture of a plan, on sand or paper."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from optplan.domain.arrays import BoolArray, FloatArray
+from optplan.domain.errors import InputError
+from optplan.domain.path import RAISED, Path
+from optplan.domain.result import Plan
+from optplan.domain.robot import DiffDrive
+from optplan.geometry.paths import along
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+ARROWS = 60
+"""About how many direction arrows work and travel get each."""
+NUMBERED = 60
+"""Up to this many strokes carry their number."""
+CHORD = 0.05
+"""Turning between the points of a drawn arc, rad."""
+
+
+class _Colours(NamedTuple):
+    ground: str
+    work: str
+    travel: str
+    arrow: str
+    text: str
+
+
+_SAND = _Colours("#ecdcb4", "#8a6a3f", "#1f6f8b", "#fff6dd", "#3b2f1e")
+_PAPER = _Colours("#ffffff", "#1c2a39", "#d1495b", "#ffffff", "#1c2a39")
+
+
+def figure(plan: Plan) -> Figure:
+    """A matplotlib figure of a plan. Raises InputError when it has no strokes yet."""
+    from matplotlib.figure import Figure
+
+    if plan.cover is None:
+        raise InputError("the plan has nothing to draw yet; run the stage cover first")
+    low, high = _extent(plan)
+    size = np.maximum(high - low, 1e-9)
+    inches = 8 * size / size.max()
+    inches = np.maximum(inches, 2.5)
+    made = Figure(figsize=(float(inches[0]) + 1.1, float(inches[1]) + 1.5), facecolor="white")
+    width, height = made.get_size_inches()
+    axes = made.add_axes((0.75 / width, 0.55 / height, inches[0] / width, inches[1] / height))
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    small = size.max() < 1
+    colours = _SAND if isinstance(plan.robot.mobility, DiffDrive) else _PAPER
+    axes.set_facecolor(colours.ground)
+    axes.tick_params(labelsize=8, color="#999999")
+    for spine in axes.spines.values():
+        spine.set_color("#bbbbbb")
+    if small:
+        axes.xaxis.set_major_formatter(lambda value, _: f"{value * 1000:g}")
+        axes.yaxis.set_major_formatter(lambda value, _: f"{value * 1000:g}")
+    axes.set_xlabel("mm" if small else "m", fontsize=8)
+    points_per_metre = 72 * min(inches / size)
+    if plan.path is None:
+        _draw_strokes(axes, plan, colours, points_per_metre)
+    else:
+        _draw_path(axes, plan, plan.path, colours, points_per_metre)
+    _draw_places(axes, plan, colours)
+    _draw_title(made, plan, colours)
+    return made
+
+
+def _extent(plan: Plan) -> tuple[FloatArray, FloatArray]:
+    cover = plan.cover
+    assert cover is not None  # `figure` has made sure
+    boxes = [stroke.points[:, :2] for stroke in cover.strokes]
+    if plan.path is not None:
+        boxes.append(plan.path.start[:, :2])
+    if cover.canvas is not None:
+        boxes.append(np.array([[0, 0], [cover.canvas.width, cover.canvas.height]]))
+    everything = np.concatenate(boxes) if boxes else np.zeros((1, 2))
+    low, high = everything.min(axis=0), everything.max(axis=0)
+    if cover.canvas is None:
+        border = max(0.03 * float((high - low).max()), 1e-6)
+        low, high = low - border, high + border
+    return low, high
+
+
+def _draw_strokes(axes: Axes, plan: Plan, colours: _Colours, scale: float) -> None:
+    from matplotlib.collections import LineCollection
+
+    assert plan.cover is not None
+    settings = plan.robot.tool.settings
+    for tool, setting in enumerate(settings):
+        lines = [stroke.closed_points[:, :2] for stroke in plan.cover.strokes if stroke.tool == tool]
+        if lines and tool != RAISED:
+            axes.add_collection(
+                LineCollection(
+                    lines, colors=colours.work, linewidths=setting.width * scale, capstyle="round", joinstyle="round"
+                )
+            )
+        elif lines:
+            axes.add_collection(LineCollection(lines, colors=colours.travel, linewidths=0.9, linestyles="--"))
+
+
+def _draw_path(axes: Axes, plan: Plan, path: Path, colours: _Colours, scale: float) -> None:
+    from matplotlib.collections import LineCollection
+
+    down = path.tool != RAISED
+    for tool, setting in enumerate(plan.robot.tool.settings[1:], start=1):
+        lines = _lines(path, (path.tool == tool) & (path.length > 0))
+        axes.add_collection(
+            LineCollection(
+                lines,
+                colors=colours.work,
+                linewidths=max(setting.width * scale, 0.3),
+                capstyle="round",
+                joinstyle="round",
+                zorder=2,
+            )
+        )
+    moving = path.length > 0
+    between = moving & ~down & (path.stroke < 0)
+    by_hand = moving & ~down & (path.stroke >= 0)
+    axes.add_collection(LineCollection(_lines(path, between), colors=colours.travel, linewidths=0.9, zorder=3))
+    axes.add_collection(
+        LineCollection(_lines(path, by_hand), colors=colours.travel, linewidths=1.1, linestyles="--", zorder=3)
+    )
+    _arrows(axes, path, moving & down, colours.arrow, colours.work)
+    _arrows(axes, path, between, colours.travel, colours.ground)
+    _numbers(axes, plan, colours)
+
+
+def _lines(path: Path, rows: BoolArray) -> list[FloatArray]:
+    """Polylines (k, 2) of consecutive rows that follow one another without a gap."""
+    chosen = np.flatnonzero(rows)
+    if len(chosen) == 0:
+        return []
+    turning = np.abs(path.curvature) * path.length + np.abs(path.sharpness) * path.length**2 / 2
+    parts = np.maximum(1, np.ceil(turning[chosen] / CHORD)).astype(np.int64)
+    piece = np.repeat(chosen, parts + 1)
+    begin = np.repeat(np.cumsum(parts + 1) - parts - 1, parts + 1)
+    share = (np.arange(len(piece)) - begin) / np.repeat(parts, parts + 1)
+    points = along(path, piece, path.length[piece] * share).position[:, :2]
+    polylines = np.split(points, np.cumsum(parts + 1)[:-1])
+    joined: list[list[FloatArray]] = []
+    for k, line in enumerate(polylines):
+        follows = k > 0 and chosen[k] == chosen[k - 1] + 1 and bool(np.allclose(joined[-1][-1][-1], line[0], atol=1e-9))
+        if follows:
+            joined[-1].append(line[1:])
+        else:
+            joined.append([line])
+    return [np.concatenate(lines) for lines in joined]
+
+
+def _arrows(axes: Axes, path: Path, rows: BoolArray, colour: str, edge: str) -> None:
+    """Arrow heads at even distances along the chosen rows."""
+    chosen = np.flatnonzero(rows)
+    total = float(path.length[chosen].sum())
+    if total <= 0:
+        return
+    offsets = np.concatenate([[0.0], np.cumsum(path.length[chosen])])
+    places = (np.arange(ARROWS) + 0.5) * total / ARROWS
+    row = np.clip(np.searchsorted(offsets, places, side="right") - 1, 0, len(chosen) - 1)
+    states = along(path, chosen[row], places - offsets[row])
+    axes.quiver(
+        states.position[:, 0],
+        states.position[:, 1],
+        np.cos(states.heading),
+        np.sin(states.heading),
+        color=colour,
+        edgecolor=edge,
+        linewidth=0.3,
+        scale=95,
+        headwidth=7,
+        headlength=7,
+        headaxislength=6,
+        width=0.0022,
+        pivot="mid",
+        zorder=4,
+    )
+
+
+def _numbers(axes: Axes, plan: Plan, colours: _Colours) -> None:
+    if plan.visits is None or not 1 < len(plan.visits) <= NUMBERED:
+        return
+    for number, place in enumerate(plan.visits.entry[:, :2].tolist(), start=1):
+        axes.annotate(
+            str(number),
+            place,
+            xytext=(4, 4),
+            textcoords="offset points",
+            fontsize=7,
+            color=colours.text,
+            bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "alpha": 0.75, "linewidth": 0},
+            zorder=6,
+        )
+
+
+def _draw_places(axes: Axes, plan: Plan, colours: _Colours) -> None:
+    assert plan.cover is not None
+    places = []
+    if plan.path is not None and len(plan.path):
+        last = along(plan.path, np.array([len(plan.path) - 1]), plan.path.length[-1:]).position[0]
+        places = [(plan.path.start[0], "o", "#2e9e4f", "start"), (last, "s", "#c0392b", "end")]
+    elif plan.cover.start is not None:
+        places = [(np.array(plan.cover.start), "o", "#2e9e4f", "start")]
+    for place, marker, colour, label in places:
+        axes.plot(
+            place[0], place[1], marker, ms=8, color=colour, mec="white", mew=1.2, label=label, zorder=7, ls="none"
+        )
+    if plan.path is not None:
+        axes.plot([], [], "-", color=colours.work, lw=4, label="tool down")
+        axes.plot([], [], "-", color=colours.travel, lw=1, label="tool up")
+    if places:
+        axes.legend(loc="upper right", fontsize=7, framealpha=0.85, ncols=2)
+    canvas = plan.cover.canvas
+    if canvas is not None and canvas.margin > 0:
+        m = canvas.margin
+        x, y = [m, canvas.width - m], [m, canvas.height - m]
+        axes.plot(
+            [x[0], x[1], x[1], x[0], x[0]], [y[0], y[0], y[1], y[1], y[0]], ":", color="#999999", lw=0.8, zorder=1
+        )
+
+
+def _draw_title(made: Figure, plan: Plan, colours: _Colours) -> None:
+    title = f"{plan.job.name}  ·  {plan.robot.name}"
+    facts = []
+    path, ordering = plan.path, plan.ordering
+    if path is not None:
+        down = float(path.length[path.tool != RAISED].sum())
+        up = float(path.length.sum()) - down
+        facts += [f"{_metres(down)} tool down", f"{_metres(up)} tool up"]
+    if plan.trajectory is not None:
+        minutes, seconds = divmod(round(plan.trajectory.duration), 60)
+        facts.append(f"{minutes}:{seconds:02d} min")
+    if ordering is not None and math.isfinite(ordering.gap):
+        facts.append(
+            "order proved optimal" if ordering.gap <= 1e-6 else f"order within {100 * ordering.gap:.1f} % of the bound"
+        )
+    elif plan.cover is not None and not facts:
+        facts.append(f"{len(plan.cover.strokes)} strokes")
+    width, height = made.get_size_inches()
+    left = 0.75 / width
+    made.text(left, 1 - 0.33 / height, title, fontsize=12, weight="bold", color=colours.text)
+    made.text(left, 1 - 0.6 / height, "   ".join(facts), fontsize=9, color=colours.text)
+
+
+def _metres(length: float) -> str:
+    return f"{length:.1f} m" if length >= 1 else f"{1000 * length:.0f} mm"

@@ -1,0 +1,138 @@
+"""Strokes to traversals to an ordering problem."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from optplan.connectors.families import metric_of, start_states, transit_radius
+from optplan.coverage.corners import least_radius
+from optplan.coverage.drawing import tolerance_of
+from optplan.domain.arrays import FloatArray, IntArray
+from optplan.domain.options import Options
+from optplan.domain.ordering import ArcCosts, DubinsCosts, EuclidCosts, OrderingProblem
+from optplan.domain.result import Cover
+from optplan.domain.robot import Robot
+from optplan.domain.stroke import Stroke, Traversals
+from optplan.geometry.rounding import inner_vertices
+
+DUBINS_ENTRIES = 16
+"""Vertices at which a closed stroke may be entered when headings count, unless the options say otherwise."""
+
+
+def traversals(strokes: Sequence[Stroke], robot: Robot, options: Options | None = None) -> Traversals:
+    """All ways of driving each stroke.
+
+    An open stroke can be driven from either end, a closed one from any of its vertices, in both directions where
+    headings count (elsewhere the direction changes nothing that matters to the order). Strokes that are directed or
+    have a fixed entry offer less; `options.order.entries` thins the vertices out evenly.
+
+    Parameters
+    ----------
+    strokes : (m,) what has to be driven
+    robot, options : who drives it, and how
+    """
+    options = options or Options()
+    tolerance, radius = tolerance_of(options.page, robot.tool), least_radius(robot, options)
+    speed = options.time.work_speed or robot.mobility.work_speed
+    both = metric_of(robot, options) != "euclid"
+    most = options.order.entries or (DUBINS_ENTRIES if both else None)
+    parts = [_ways(stroke, tolerance, radius, options.connect.corner, both, most) for stroke in strokes]
+    index = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
+    shapes = ((0,), (0,), (0, 5), (0, 5), (0,), (0,))
+    vertex, reverse, entry, exit, length, turned = (
+        np.concatenate([np.zeros(shape), *(part[k] for part in parts)]) for k, shape in enumerate(shapes)
+    )
+    dwell = np.array([stroke.dwell for stroke in strokes])[index] if len(index) else np.zeros(0)
+    duration = length / speed + turned / robot.mobility.turn_rate + dwell
+    return Traversals(index, vertex.astype(np.int64), reverse != 0, entry, exit, length, duration)
+
+
+def _ways(
+    stroke: Stroke, tolerance: float, radius: float, corner: float, both: bool, most: int | None
+) -> tuple[FloatArray, ...]:
+    """entry vertex, reverse, entry state, exit state, length and angle turned of every way of one stroke."""
+    points = stroke.points
+    if stroke.is_stop:
+        state = np.zeros((1, 5))
+        state[0, : points.shape[1]] = points[0]
+        return np.zeros(1), np.zeros(1), state, state, np.zeros(1), np.zeros(1)
+    plane = points[:, :2]
+    vertices = inner_vertices(plane, stroke.closed, tolerance, radius, corner)
+    # rounding a vertex saves two tangents and costs an arc
+    half = np.where(vertices.tangent > 0, np.abs(vertices.deflection) / 2, 1.0)
+    saved = np.where(vertices.tangent > 0, 2 * vertices.tangent * (1 - half / np.tan(half)), 0.0)
+    turns = np.where(vertices.corner, np.abs(vertices.deflection), 0.0)
+    ring = stroke.closed_points
+    total = stroke.length - saved.sum()
+    steps = np.diff(ring, axis=0)
+    headings = np.arctan2(steps[:, 1], steps[:, 0])
+    count = len(points)
+    if stroke.closed:
+        choice = np.arange(count) if stroke.entry is None else np.array([stroke.entry])
+        if most is not None and len(choice) > most:
+            choice = choice[np.linspace(0, count, most, endpoint=False).astype(np.int64)]
+        into, out_of = headings[choice - 1], headings[choice]
+        rows: list[tuple[IntArray, int, IntArray, IntArray, FloatArray, FloatArray]]
+        rows = [(choice, 0, choice, choice, out_of, into)]
+        if both and not stroke.directed:
+            rows.append((choice, 1, choice, choice, into + math.pi, out_of + math.pi))
+        lengths = total + saved[choice]  # where it begins and ends, a ring is not rounded
+        angles = turns.sum() - turns[choice]
+    else:
+        first, last = np.array([0]), np.array([count - 1])
+        rows = [(first, 0, first, last, headings[:1], headings[-1:])]
+        rows.append((last, 1, last, first, headings[-1:] + math.pi, headings[:1] + math.pi))
+        if stroke.directed or stroke.entry == 0:
+            rows = rows[:1]
+        elif stroke.entry is not None:
+            rows = rows[1:]
+        lengths, angles = np.array([total]), np.array([turns.sum()])
+    return (
+        np.concatenate([row[0] for row in rows]),
+        np.concatenate([np.full(len(row[0]), row[1]) for row in rows]),
+        np.concatenate([_states(points, row[2], row[4]) for row in rows]),
+        np.concatenate([_states(points, row[3], row[5]) for row in rows]),
+        np.tile(lengths, len(rows)),
+        np.tile(angles, len(rows)),
+    )
+
+
+def _states(points: FloatArray, vertex: IntArray, heading: FloatArray) -> FloatArray:
+    states = np.zeros((len(vertex), 5))
+    states[:, : points.shape[1]] = points[vertex]
+    states[:, 3] = heading
+    return states
+
+
+def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Options | None = None) -> OrderingProblem:
+    """The problem of visiting every stroke once: nodes are the rows of `ways`, costs are metres between strokes.
+
+    Parameters
+    ----------
+    ways : traversals of the strokes of `cover`
+    cover : gives precedence and, unless the options name one, the start point
+    robot, options : give the metric: straight lines, or Dubins paths of the least radius at transit speed
+
+    Raises
+    ------
+    InputError : a metric that this robot cannot have
+    """
+    options = options or Options()
+    metric = metric_of(robot, options)
+    start = options.order.start or cover.start
+    costs: ArcCosts
+    if metric == "dubins":
+        from optplan.geometry.dubins import dubins_lengths
+
+        radius = transit_radius(robot, options)
+        entries, exits = ways.entry[:, [0, 1, 3]], ways.exit[:, [0, 1, 3]]
+        costs = DubinsCosts(exits, entries, radius, dubins_lengths)
+        begin = np.zeros(0) if start is None else start_states(start, entries, radius)[1]
+    else:
+        costs = EuclidCosts(ways.exit[:, :3], ways.entry[:, :3])
+        place = None if start is None else np.array([*start, 0.0])
+        begin = np.zeros(0) if place is None else np.linalg.norm(ways.entry[:, :3] - place, axis=1)
+    return OrderingProblem(ways.stroke, costs, start_costs=begin, precedence=np.array(cover.precedence).reshape(-1, 2))

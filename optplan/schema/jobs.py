@@ -1,0 +1,250 @@
+"""Jobs as JSON: drawing, field, facade, surface."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field as Entry
+
+from optplan.domain.arrays import FloatArray
+from optplan.domain.job import (
+    Curve,
+    Drawing,
+    Element,
+    Facade,
+    Field,
+    FieldSegment,
+    FillRule,
+    FillSettings,
+    Job,
+    Note,
+    Surface,
+)
+from optplan.schema.base import VERSION, Angle, Length, Model, Point, Point3
+from optplan.schema.options import FillModel
+
+Colour = Annotated[str, Entry(pattern="^#[0-9a-f]{6}$")]
+
+
+class NoteModel(Model):
+    """A line of the load report."""
+
+    kind: str
+    place: str
+    text: str
+    times: int = 1
+
+
+class CurveModel(Model):
+    """A chain of straight lines or cubic Beziers, in metres."""
+
+    points: list[Point] = Entry(min_length=2)
+    handles: list[tuple[Point, Point]] | None = Entry(None, description="inner control points of each segment")
+    closed: bool = False
+
+
+class ElementModel(Model):
+    """One element of a drawing."""
+
+    id: str = Entry(min_length=1)
+    curves: list[CurveModel]
+    stroke: Colour | None = None
+    fill: Colour | None = None
+    stroke_width: float = Entry(1.0, ge=0, description="drawing units")
+    fill_rule: Literal["nonzero", "evenodd"] = "nonzero"
+    fill_settings: FillModel = Entry(default_factory=FillModel)
+    entry: int | None = None
+    layer: str = ""
+
+
+class DrawingModel(Model):
+    """A drawing, in metres as printed on paper, y up."""
+
+    version: str = VERSION
+    kind: Literal["drawing"] = "drawing"
+    name: str
+    unit: float = Entry(0.0254 / 96, gt=0, description="metres of one drawing unit")
+    page: Point | None = None
+    elements: list[ElementModel]
+    notes: list[NoteModel] = Entry(default_factory=list)
+
+
+class SegmentModel(Model):
+    """A line, or an arc with centre and sweep."""
+
+    id: str = Entry(min_length=1)
+    start: Point
+    end: Point
+    center: Point | None = None
+    sweep: Angle = 0.0
+    tool: int = Entry(1, ge=0)
+    label: str = ""
+
+
+class FieldModel(Model):
+    """A sports field, in metres."""
+
+    version: str = VERSION
+    kind: Literal["field"] = "field"
+    name: str
+    segments: list[SegmentModel] = Entry(min_length=1)
+    keep_in: list[Point] | None = None
+    keep_out: list[list[Point]] = Entry(default_factory=list)
+    notes: list[NoteModel] = Entry(default_factory=list)
+
+
+class FacadeModel(Model):
+    """A wall to wash, in metres."""
+
+    version: str = VERSION
+    kind: Literal["facade"] = "facade"
+    name: str
+    outline: list[Point] = Entry(min_length=3)
+    no_go: list[list[Point]] = Entry(default_factory=list)
+    stops: list[Point] | None = None
+    radius: Length = Entry(1.0, gt=0)
+    tau: float = 0.75
+    width: float = 2.0
+    notes: list[NoteModel] = Entry(default_factory=list)
+
+
+class SurfaceModel(Model):
+    """A recorded surface, in metres."""
+
+    version: str = VERSION
+    kind: Literal["surface"] = "surface"
+    name: str
+    points: list[Point3] = Entry(min_length=3)
+    tool_axes: list[Point3] | None = None
+    disc_radius: Length = Entry(0.02, gt=0)
+    notes: list[NoteModel] = Entry(default_factory=list)
+
+
+JobModel = Annotated[DrawingModel | FieldModel | FacadeModel | SurfaceModel, Entry(discriminator="kind")]
+
+
+def note_models(notes: tuple[Note, ...]) -> list[NoteModel]:
+    """Records of a load report."""
+    return [NoteModel(kind=n.kind, place=n.place, text=n.text, times=n.times) for n in notes]
+
+
+def notes_from(models: list[NoteModel]) -> tuple[Note, ...]:
+    """The load report that records describe."""
+    return tuple(Note(m.kind, m.place, m.text, m.times) for m in models)
+
+
+def job_from(model: DrawingModel | FieldModel | FacadeModel | SurfaceModel) -> Job:
+    """The job that a record describes. Raises InputError with the part that is wrong."""
+    notes = notes_from(model.notes)
+    match model:
+        case DrawingModel():
+            return Drawing(model.name, tuple(map(_element_from, model.elements)), model.unit, model.page, notes)
+        case FieldModel():
+            segments = tuple(
+                FieldSegment(s.id, _array(s.start), _array(s.end), _maybe(s.center), s.sweep, s.tool, s.label)
+                for s in model.segments
+            )
+            keep_out = tuple(map(_array, model.keep_out))
+            return Field(model.name, segments, _maybe(model.keep_in), keep_out, notes)
+        case FacadeModel():
+            no_go = tuple(map(_array, model.no_go))
+            stops = _maybe(model.stops)
+            return Facade(model.name, _array(model.outline), no_go, stops, model.radius, model.tau, model.width, notes)
+        case SurfaceModel():
+            return Surface(model.name, _array(model.points), _maybe(model.tool_axes), model.disc_radius, notes)
+
+
+def _element_from(model: ElementModel) -> Element:
+    curves = tuple(Curve(_array(c.points), _maybe(c.handles), c.closed) for c in model.curves)
+    fill = FillSettings(**model.fill_settings.model_dump())
+    rule = FillRule(model.fill_rule)
+    return Element(model.id, curves, model.stroke, model.fill, model.stroke_width, rule, fill, model.entry, model.layer)
+
+
+def job_model(job: Job) -> DrawingModel | FieldModel | FacadeModel | SurfaceModel:
+    """The record that describes a job."""
+    match job:
+        case Drawing():
+            elements = [_element_model(element) for element in job.elements]
+            return DrawingModel(
+                name=job.name, unit=job.unit, page=job.page, elements=elements, notes=note_models(job.notes)
+            )
+        case Field():
+            segments = [
+                {
+                    "id": s.id,
+                    "start": s.start.tolist(),
+                    "end": s.end.tolist(),
+                    "center": None if s.center is None else s.center.tolist(),
+                    "sweep": math.degrees(s.sweep),
+                    "tool": s.tool,
+                    "label": s.label,
+                }
+                for s in job.segments
+            ]
+            return FieldModel.model_validate(
+                {
+                    "name": job.name,
+                    "segments": segments,
+                    "keep_in": None if job.keep_in is None else job.keep_in.tolist(),
+                    "keep_out": [ring.tolist() for ring in job.keep_out],
+                    "notes": note_models(job.notes),
+                }
+            )
+        case Facade():
+            return FacadeModel.model_validate(
+                {
+                    "name": job.name,
+                    "outline": job.outline.tolist(),
+                    "no_go": [ring.tolist() for ring in job.no_go],
+                    "stops": None if job.stops is None else job.stops.tolist(),
+                    "radius": job.radius,
+                    "tau": job.tau,
+                    "width": job.width,
+                    "notes": note_models(job.notes),
+                }
+            )
+        case Surface():
+            return SurfaceModel.model_validate(
+                {
+                    "name": job.name,
+                    "points": job.points.tolist(),
+                    "tool_axes": None if job.tool_axes is None else job.tool_axes.tolist(),
+                    "disc_radius": job.disc_radius,
+                    "notes": note_models(job.notes),
+                }
+            )
+
+
+def _element_model(element: Element) -> ElementModel:
+    fill = element.fill_settings
+    curves = [
+        CurveModel(
+            points=curve.points.tolist(),
+            handles=None if curve.handles is None else curve.handles.tolist(),
+            closed=curve.closed,
+        )
+        for curve in element.curves
+    ]
+    direction = None if fill.direction is None else f"{fill.direction!r} rad"
+    return ElementModel(
+        id=element.id,
+        curves=curves,
+        stroke=element.stroke,
+        fill=element.fill,
+        stroke_width=element.stroke_width,
+        fill_rule=element.fill_rule.value,
+        fill_settings=FillModel.model_validate({"direction": direction, "spacing": fill.spacing, "inset": fill.inset}),
+        entry=element.entry,
+        layer=element.layer,
+    )
+
+
+def _array(values: object) -> FloatArray:
+    return np.array(values, dtype=np.float64)
+
+
+def _maybe(values: object | None) -> FloatArray | None:
+    return None if values is None else _array(values)

@@ -1,0 +1,108 @@
+"""Options as TOML or JSON."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+
+from pydantic import Field
+
+from optplan.domain.errors import located
+from optplan.domain.job import FillSettings
+from optplan.domain.options import ConnectOptions, CoverOptions, Options, OrderOptions, PageOptions, TimeOptions
+from optplan.schema.base import Angle, Duration, Length, Model, Speed
+
+
+class PageModel(Model):
+    """How a drawing is put on its canvas."""
+
+    width: Length | None = Field(None, description="of the canvas; default: the robot's")
+    height: Length | None = Field(None, description="of the canvas; default: the robot's")
+    margin: Length | None = Field(None, description="nothing is placed closer to the border; default: the robot's")
+    tolerance: Length | None = Field(None, description="between a drawn curve and its polyline; default: mark / 20")
+
+
+class FillModel(Model):
+    """How one area is filled."""
+
+    direction: Angle | None = None
+    spacing: Length | None = None
+    inset: Length | None = None
+
+
+class CoverModel(Model):
+    """How areas are filled."""
+
+    direction: Angle = Field(0.0, description="of the fill lines from the x axis; a bare number is degrees")
+    spacing: Length | None = Field(None, description="between fill lines; default: the width of the fill tool")
+    inset: Length | None = Field(None, description="of the lines from the outline; default: what fits the boundary")
+    boundary: bool = Field(True, description="drive the outline too, half a tool width inside")
+    elements: dict[str, FillModel] = Field(default_factory=dict, description="settings of single elements, by id")
+
+
+class OrderModel(Model):
+    """How strokes are ordered."""
+
+    solver: str = "auto"
+    metric: str = Field("auto", description="euclid, dubins or auto")
+    seconds: Duration | None = Field(None, description="time limit")
+    iterations: int | None = Field(None, ge=0, description="iteration limit: with a seed a repeatable plan")
+    seed: int = Field(0, ge=0, lt=2**31)
+    start: tuple[Length, Length] | None = Field(None, description="where the robot stands")
+    entries: int | None = Field(None, ge=1, description="most vertices at which a closed stroke may be entered")
+
+
+class ConnectModel(Model):
+    """How strokes are driven and joined."""
+
+    corner: Angle = Field(math.radians(30), description="a sharper vertex is a corner; a bare number is degrees")
+
+
+class TimeModel(Model):
+    """Speeds."""
+
+    work_speed: Speed | None = None
+    transit_speed: Speed | None = None
+
+
+class OptionsModel(Model):
+    """All settings of a plan, a table for each stage."""
+
+    page: PageModel = Field(default_factory=PageModel)
+    cover: CoverModel = Field(default_factory=CoverModel)
+    order: OrderModel = Field(default_factory=OrderModel)
+    connect: ConnectModel = Field(default_factory=ConnectModel)
+    time: TimeModel = Field(default_factory=TimeModel)
+
+
+def options_from(model: OptionsModel) -> Options:
+    """The options that a record describes. Raises InputError with the setting that is wrong."""
+    cover = model.cover
+    elements = tuple((id, FillSettings(**fill.model_dump())) for id, fill in cover.elements.items())
+    with located("options"):
+        return Options(
+            PageOptions(**model.page.model_dump()),
+            CoverOptions(cover.direction, cover.spacing, cover.inset, cover.boundary, elements),
+            OrderOptions(**model.order.model_dump()),
+            ConnectOptions(**model.connect.model_dump()),
+            TimeOptions(**model.time.model_dump()),
+        )
+
+
+def options_model(options: Options) -> OptionsModel:
+    """The record that describes options; angles carry their unit, as a bare number would mean degrees."""
+    cover = asdict(options.cover)
+    cover["direction"] = f"{options.cover.direction!r} rad"
+    cover["elements"] = {
+        id: {**asdict(fill), "direction": None if fill.direction is None else f"{fill.direction!r} rad"}
+        for id, fill in options.cover.elements
+    }
+    return OptionsModel.model_validate(
+        {
+            "page": asdict(options.page),
+            "cover": cover,
+            "order": asdict(options.order),
+            "connect": {"corner": f"{options.connect.corner!r} rad"},
+            "time": asdict(options.time),
+        }
+    )

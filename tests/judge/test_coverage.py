@@ -1,0 +1,106 @@
+"""Areas with closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from judge.hand_made import PLOTTER, RAKE, Pen, failures, plan_of
+
+from optplan.domain.path import Path
+from optplan.domain.result import Area, Cover, Plan
+from optplan.domain.stroke import Stroke
+from optplan.judge import verify
+
+FACETS = 0.007  # share of a round end that its flat sides leave out
+
+
+def drawn(cover: Cover, indices: list[int] | None = None) -> Plan:
+    pen = Pen(cover.strokes[0].points[0])
+    for index in range(len(cover.strokes)) if indices is None else indices:
+        pen.draw(cover.strokes[index], index)
+    return plan_of(PLOTTER, pen.path, cover)
+
+
+def test_a_straight_mark_is_a_rectangle_with_round_ends() -> None:
+    report = verify(drawn(Cover((Stroke("bar", np.array([[0.0, 0], [4, 0]]), tool=2),))))
+    exact = 4 * 0.3 + math.pi * 0.15**2
+    assert report.figure("wanted area") == pytest.approx(exact, abs=FACETS * math.pi * 0.15**2)
+    assert report.figure("done area") == report.figure("wanted area")
+    assert report.figure("missed area") == report.figure("overspill area") == 0
+    assert report.figure("coverage") == 1
+
+
+def test_a_circle_driven_as_an_arc_covers_its_polyline() -> None:
+    angle = np.linspace(0, 2 * math.pi, 100, endpoint=False)
+    ring = Stroke("ring", np.stack([2 * np.sin(angle), 2 - 2 * np.cos(angle)], axis=1), closed=True)
+    pen = Pen(np.zeros(2))
+    pen.curve(4 * math.pi, 0.5, tool=1, stroke=0)
+    report = verify(plan_of(RAKE, pen.path, Cover((ring,))))
+    assert failures(report) == set()
+    assert report.figure("done area") == pytest.approx(math.pi * (2.05**2 - 1.95**2), rel=1e-3)
+    deviation = next(check for check in report.checks if check.name == "deviation")
+    assert deviation.value == pytest.approx(2 * (1 - math.cos(math.pi / 100)), rel=0.05)
+    # chord against arc: 2/3 of the rise, on both sides of the mark
+    assert report.figure("missed area") == pytest.approx(4 * math.pi * 2 / 3 * deviation.value, rel=0.15)
+
+
+def test_area_with_a_hole_under_three_marks() -> None:
+    outer = np.array([[0.0, 0], [4, 0], [4, 0.9], [0, 0.9]])
+    hole = np.array([[1.0, 0.3], [2, 0.3], [2, 0.6], [1, 0.6]])
+    lines = tuple(Stroke(f"{k}", np.array([[0.15, y], [3.85, y]]), tool=2) for k, y in enumerate((0.15, 0.45, 0.75)))
+    report = verify(drawn(Cover(lines, (Area("sign", (outer, hole), 2),)), [0, 2, 1]))
+    corners = 6 * (2 * 0.15 * 0.15 - math.pi * 0.15**2 / 2)  # six round ends in square corners
+    size = 4 * 0.9 - 0.3
+    assert report.figure("area coverage") == pytest.approx(1 - corners / size, abs=6 * FACETS * 0.07 / size)
+    assert report.figure("missed area") == pytest.approx(corners, rel=0.1)
+    # the middle mark runs over the hole, as asked: it is a stroke
+    assert report.figure("overspill area") == pytest.approx(0, abs=1e-9)
+    assert failures(report) == set()
+
+
+def test_overlapping_marks_count_once() -> None:
+    cross = (Stroke("a", np.array([[-1.0, 0], [1, 0]])), Stroke("b", np.array([[0.0, -1], [0, 1]])))
+    report = verify(drawn(Cover(cross)))
+    assert report.figure("done area") == pytest.approx(2 * (2 * 0.1 + math.pi * 0.05**2) - 0.01, rel=1e-3)
+
+
+def test_what_is_marked_outside_is_overspill() -> None:
+    plan = drawn(Cover((Stroke("a", np.array([[0.0, 0], [1, 0]])),)))
+    pen = Pen(np.array([-2.0, 0]))
+    pen.go((-1.0, 0), tool=1)
+    pen.go((0.0, 0))
+    pen.draw(Stroke("a", np.array([[0.0, 0], [1, 0]])), 0)
+    report = verify(plan_of(PLOTTER, pen.path, plan.cover or Cover(())))
+    assert failures(report) == {"tool"}
+    assert report.figure("overspill area") == pytest.approx(0.1 + math.pi * 0.05**2, rel=1e-2)
+    spot = next(check.place for check in report.checks if check.name == "overspill")
+    assert spot is not None
+    assert -2.1 < spot[0] < -0.9
+
+
+@pytest.mark.parametrize(
+    "cover",
+    [
+        Cover(()),
+        Cover((), (Area("nothing", (np.zeros((0, 2)),), 1),)),
+        Cover((), (Area("point", (np.zeros((5, 2)),), 1),)),
+        Cover((), (Area("line", (np.array([[0.0, 0], [1, 0], [2, 0]]),), 1),)),
+        Cover((), (Area("bow tie", (np.array([[0.0, 0], [1, 1], [1, 0], [0, 1]]),), 1),)),
+        Cover((Stroke("there and back", np.array([[0.0, 0], [1, 0], [0, 0]])),)),
+        Cover((Stroke("dust", np.array([[0.0, 0], [1e-9, 0]])),)),
+        Cover((Stroke("far away", np.array([[1e7, 1e7], [1e7 + 1, 1e7]])),)),
+    ],
+    ids=lambda cover: (cover.strokes + cover.areas)[0].__class__.__name__ if cover.strokes + cover.areas else "empty",
+)
+@pytest.mark.parametrize("driven", [False, True])
+def test_odd_shapes_are_measured_without_a_word(cover: Cover, driven: bool) -> None:
+    pen = Pen(np.zeros(2))
+    if driven and cover.strokes:
+        pen = Pen(cover.strokes[0].points[0])
+        pen.draw(cover.strokes[0], 0)
+    path: Path = pen.path
+    report = verify(plan_of(PLOTTER, path, cover))
+    assert all(math.isfinite(value) for _, value, _ in report.figures)
+    assert report.ok == (driven or not cover.strokes)
