@@ -65,37 +65,36 @@ def _curve(subpath: Subpath, matrix: Matrix, close_gap: float) -> tuple[Curve, b
     count = len(subpath.handles)
     if count == 0:
         return None
-    straight = not any(subpath.handles)
-    points = _placed(np.array(subpath.points, dtype=np.complex128), matrix)
+    pairs = [pair for pair in subpath.handles if pair is not None]
+    flat = [*subpath.points, *(point for pair in pairs for point in pair)]
+    placed = _placed(np.array(flat, dtype=np.complex128), matrix)
+    points = placed[: count + 1]
     # `inner` holds the two inner control points of each segment; those of lines at thirds
-    inner = None
-    if not straight:
-        inner = np.empty((count, 2), dtype=np.complex128)
-        curved = np.array([pair is not None for pair in subpath.handles])
-        given = np.array([pair for pair in subpath.handles if pair is not None], dtype=np.complex128)
-        inner[curved] = _placed(given, matrix)
-        starts, ends = points[:-1][~curved], points[1:][~curved]
-        inner[~curved, 0], inner[~curved, 1] = (2 * starts + ends) / 3, (starts + 2 * ends) / 3
-    small = SAME * float(np.max(np.abs(points)))
+    inner = placed[count + 1 :].reshape(-1, 2) if pairs else None
+    if inner is not None and len(pairs) < count:
+        given, inner = inner, _thirds(points, closed=False)
+        inner[[pair is not None for pair in subpath.handles]] = given
+    small = SAME * float(np.abs(points).max())
     points, inner = _without_duplicates(points, inner, small)
     if len(points) < 2:
         return None
     closed, joined = subpath.closed, False
-    ends_meet = abs(points[0] - points[-1]) <= small
+    ends_meet = bool(abs(points[0] - points[-1]) <= small)
     if not closed and (len(points) > 3 or inner is not None):
         joined = not ends_meet and _nearly_closed(points, inner, close_gap)
         closed = joined or ends_meet
         # a rounding error of the file needs no segment of its own
-        ends_meet = ends_meet or (joined and abs(points[0] - points[-1]) <= SNAP * close_gap)
+        ends_meet = ends_meet or (joined and bool(abs(points[0] - points[-1]) <= SNAP * close_gap))
     if closed and ends_meet and len(points) > 2:
         points = points[:-1]
     elif closed and inner is not None:
         a, b = points[-1], points[0]
         inner = np.concatenate([inner, [[(2 * a + b) / 3, (a + 2 * b) / 3]]])
-    if inner is not None and np.allclose(inner, _thirds(points, closed), rtol=0, atol=small):
+    if inner is not None and len(pairs) < count and np.abs(inner - _thirds(points, closed)).max() <= small:
+        # the only curves had no length
         inner = None
-    handles = None if inner is None else np.stack([inner.real, inner.imag], axis=-1)
-    return Curve(np.column_stack([points.real, points.imag]), handles, closed), joined
+    handles = None if inner is None else _pairs(inner)
+    return Curve(_pairs(points), handles, closed), joined
 
 
 def _placed(values: Complexes, matrix: Matrix) -> Complexes:
@@ -108,10 +107,16 @@ def _placed(values: Complexes, matrix: Matrix) -> Complexes:
     return placed
 
 
+def _pairs(values: Complexes) -> FloatArray:
+    """Complex numbers as a last axis of x and y."""
+    return np.ascontiguousarray(values).view(np.float64).reshape(*values.shape, 2)
+
+
 def _thirds(points: Complexes, closed: bool) -> Complexes:
     starts = points if closed else points[:-1]
     ends = np.roll(points, -1) if closed else points[1:]
-    return np.column_stack([(2 * starts + ends) / 3, (starts + 2 * ends) / 3])
+    thirds: Complexes = np.column_stack([(2 * starts + ends) / 3, (starts + 2 * ends) / 3])
+    return thirds
 
 
 def _without_duplicates(points: Complexes, inner: Complexes | None, small: float) -> tuple[Complexes, Complexes | None]:
@@ -121,6 +126,8 @@ def _without_duplicates(points: Complexes, inner: Complexes | None, small: float
         return np.concatenate([points[:1], points[1:][keep]]), None
     starts, ends = points[:-1], points[1:]
     apart = np.abs(ends - starts) > small
+    if apart.all():
+        return points, inner
     loop = ~apart & (np.max(np.abs(inner - starts[:, None]), axis=1) > small)
     if not loop.any():
         return np.concatenate([points[:1], ends[apart]]), inner[apart]
@@ -151,9 +158,3 @@ def _nearly_closed(points: Complexes, inner: Complexes | None, close_gap: float)
 def is_area(curves: tuple[Curve, ...]) -> bool:
     """Whether filling the curves could paint anything: some vertex or handle is off a straight line."""
     return any(curve.handles is not None or len(curve.points) > 2 for curve in curves)
-
-
-def bounds(curves: tuple[Curve, ...]) -> FloatArray:
-    """(2, 2) lower and upper corner of the vertices."""
-    points = np.concatenate([curve.points for curve in curves])
-    return np.stack([points.min(axis=0), points.max(axis=0)])

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+from itertools import islice
 from typing import Literal, NamedTuple
 
 from optplan.domain.errors import InputError, LimitError
+from optplan.jobs.limits import MAX_SEGMENTS
 
 NUMBER = r"[-+]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][-+]?[0-9]++)?"
 NUMBERS = re.compile(NUMBER)
@@ -96,8 +98,8 @@ def numbers(run: str, limit: int) -> list[float]:
     LimitError : more than `limit` of them
     InputError : one is not finite
     """
-    if len(run) > limit and sum(1 for _ in NUMBERS.finditer(run)) > limit:
-        raise LimitError(f"more than {limit} numbers in one attribute, as many as the limit of segments leaves")
+    if len(run) > limit and next(islice(NUMBERS.finditer(run), limit, None), None) is not None:
+        raise LimitError(f"more than {limit} numbers in one attribute: beyond the limit of {MAX_SEGMENTS} segments")
     values = list(map(float, NUMBERS.findall(run)))
     if values and max(map(abs, values)) > LARGEST:
         for match in NUMBERS.finditer(run):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from lxml import etree
 
 from optplan.jobs._svg_census import XLINK, is_element
-from optplan.jobs._svg_color import Paint, parse_paint
+from optplan.jobs._svg_color import MAX_PAINT_CHARS, Paint, parse_paint
 from optplan.jobs._svg_report import Report, local_name
 from optplan.jobs._svg_sheet import inline_declarations
 from optplan.jobs._svg_style import Style
@@ -92,7 +92,7 @@ class Painter:
 
 def _stop_color(stop: etree._Element) -> str | None:
     text = str(stop.get("stop-color", "#000000"))
-    for declaration in inline_declarations(str(stop.get("style", ""))):
+    for declaration in inline_declarations(str(stop.get("style", ""))[:MAX_PAINT_CHARS]):
         if declaration.name == "stop-color":
             text = declaration.value
     paint = parse_paint(text)

@@ -18,7 +18,8 @@ MAX_SELECTOR_TOKENS = 300
 """tokens of one rule's selectors; no drawing program writes as many"""
 
 _MEDIA = re.compile(r"\s*(?:(?:only\s+)?(?:all|screen))?\s*", re.IGNORECASE)
-_PLAIN = re.compile(r"[^\"'\\/{}\[\]@!()]*+(?:\([^\"'\\/{}\[\]@!();]*+\)[^\"'\\/{}\[\]@!()]*+)*+")
+_CALM = r"[^\"'\\/{}\[\]@!();]*+"
+_PLAIN = re.compile(rf"(?:[^\"'\\/{{}}\[\]@!()]++|\({_CALM}\)|'{_CALM}'|\"{_CALM}\")*+")
 
 
 class Declaration(NamedTuple):
@@ -209,10 +210,14 @@ def _declarations(content: Any) -> list[Declaration]:
     ]
 
 
+def is_plain(text: str) -> bool:
+    """Whether a `style` attribute holds nothing that needs a tokenizer, as what drawing programs repeat everywhere."""
+    return _PLAIN.fullmatch(text) is not None
+
+
 def inline_declarations(text: str) -> list[Declaration]:
     """Declarations of a `style` attribute, in order."""
-    if _PLAIN.fullmatch(text) is None:
+    if not is_plain(text):
         return _declarations(text)
-    # nothing that needs a tokenizer: most drawing programs repeat this for every element
     pairs = (part.partition(":") for part in text.split(";"))
     return [Declaration(name.strip().lower(), value.strip()) for name, colon, value in pairs if colon]

@@ -9,11 +9,13 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from optplan.domain.errors import LimitError
 from optplan.domain.job import FillRule
 from optplan.jobs._svg_color import BLACK, NO_PAINT, Paint, parse_paint
 from optplan.jobs._svg_number import FONT_UNITS, NUMBERS, parse_length
 from optplan.jobs._svg_report import Report
-from optplan.jobs._svg_sheet import Declaration, StyleSheets, inline_declarations
+from optplan.jobs._svg_sheet import Declaration, StyleSheets, inline_declarations, is_plain
+from optplan.jobs.limits import MAX_INLINE_CHARS, MAX_STYLE_CHARS
 
 _CASCADE_WORDS = frozenset({"inherit", "initial", "unset", "revert", "revert-layer"})
 CACHED_CHARS = 2000
@@ -85,6 +87,8 @@ class Cascade:
     def __init__(self, root: etree._Element, report: Report) -> None:
         self._sheets = StyleSheets(root, report)
         self._report = report
+        self._unusual = 0
+        """characters of long style attributes that needed the tokenizer"""
 
     def style(
         self, element: etree._Element, parent: Style, viewport: tuple[float, float] | None, place: Callable[[], str]
@@ -155,7 +159,7 @@ class Cascade:
                     self._take(values, Declaration(str(name), str(value).strip()), place)
             elif name == "style":
                 text = str(value)
-                inline = _inline(text) if len(text) <= CACHED_CHARS else inline_declarations(text)
+                inline = _inline(text) if len(text) <= CACHED_CHARS else self._long_inline(text)
         matching = self._sheets.matching(element)
         if not (inline or matching):
             return values
@@ -165,6 +169,14 @@ class Cascade:
                 if declaration.important is important:
                     self._take(values, declaration, place)
         return values
+
+    def _long_inline(self, text: str) -> list[Declaration]:
+        if len(text) > MAX_INLINE_CHARS:
+            raise LimitError(f"the style attribute has {len(text)} characters; the limit is {MAX_INLINE_CHARS}")
+        self._unusual += 0 if is_plain(text) else len(text)
+        if self._unusual > MAX_STYLE_CHARS:
+            raise LimitError(f"long style attributes hold more than {MAX_STYLE_CHARS} characters, the limit")
+        return inline_declarations(text)
 
     def _take(self, values: dict[str, str], declaration: Declaration, place: Callable[[], str]) -> None:
         name, text, _ = declaration

@@ -14,10 +14,19 @@ from xml.parsers import expat
 from lxml import etree
 
 from optplan.domain.errors import InputError, LimitError, located
-from optplan.jobs.limits import MAX_ATTRIBUTES, MAX_BYTES, MAX_DEPTH, MAX_ENTITIES, MAX_ENTITY_CHARS, MAX_NODES
+from optplan.jobs.limits import (
+    MAX_ATTRIBUTES,
+    MAX_BYTES,
+    MAX_DEPTH,
+    MAX_ENTITIES,
+    MAX_ENTITY_CHARS,
+    MAX_NODES,
+    MAX_OWN_ATTRIBUTES,
+)
 
 SVG = "http://www.w3.org/2000/svg"
 _CHUNK = 65536
+_TOO_DEEP = f"elements are nested more than {MAX_DEPTH} deep, the limit"
 
 
 class Source(NamedTuple):
@@ -108,14 +117,18 @@ def parse_tree(source: Source) -> etree._Element:
         events=("start", "end"),
         no_network=True,
         load_dtd=False,
-        resolve_entities=entities > 0,
+        resolve_entities="internal",  # type: ignore[arg-type] # the stubs know only bool
         huge_tree=not entities,
         encoding=source.encoding,
     )
     try:
         root = _feed(parser, source.data)
     except etree.XMLSyntaxError as error:
-        raise InputError(f"is not well-formed XML: {error.msg}") from None
+        if "Excessive depth" in error.msg:
+            # the parser's own limit lies higher, but it looks ahead of what it hands over
+            raise LimitError(_TOO_DEEP, f"line {error.lineno}") from None
+        message = " ".join(error.msg.split())
+        raise InputError(f"is not well-formed XML: {message}") from None
     except LookupError as error:
         raise InputError(f"has an encoding that is not known ({error})") from None
     if etree.QName(root).localname != "svg" or etree.QName(root).namespace not in (SVG, None):
@@ -136,12 +149,12 @@ def _feed(parser: etree.XMLPullParser, data: bytes) -> etree._Element:
             root = element if root is None else root
             depth, count = depth + 1, count + 1
             if depth > MAX_DEPTH:
-                raise LimitError(
-                    f"line {element.sourceline}: elements are nested more than {MAX_DEPTH} deep, which is the limit"
-                )
+                raise LimitError(_TOO_DEEP, f"line {element.sourceline}")
             if count > MAX_NODES:
+                raise LimitError(f"there are more than {MAX_NODES} elements, the limit", f"line {element.sourceline}")
+            if len(element.attrib) > MAX_OWN_ATTRIBUTES:
                 raise LimitError(
-                    f"line {element.sourceline}: there are more than {MAX_NODES} elements, which is the limit"
+                    f"an element has more than {MAX_OWN_ATTRIBUTES} attributes, the limit", f"line {element.sourceline}"
                 )
     parser.close()
     if root is None:

@@ -89,7 +89,7 @@ class Walk:
     Parameters
     ----------
     census, cascade, page, report : of the same file
-    close_gap : ends at most this far apart are joined, m; None takes half of each stroke's width
+    close_gap : ends at most this far apart are joined, drawing units; None takes half of each stroke's width
     """
 
     def __init__(self, census: Census, cascade: Cascade, page: Page, report: Report, close_gap: float | None) -> None:
@@ -299,7 +299,7 @@ class Walk:
         self._spent.segments += sum(len(subpath.handles) for subpath in shape.subpaths)
         if self._spent.segments > MAX_SEGMENTS:
             raise LimitError(f"the drawing has more than {MAX_SEGMENTS} segments, which is the limit")
-        gap = width * self._page.unit / 2 if self._close_gap is None else self._close_gap
+        gap = self._page.unit * (width / 2 if self._close_gap is None else self._close_gap)
         made = make_curves(shape.subpaths, multiply(self._page.to_metres, context.matrix), gap)
         if not shape.subpaths and not shape.problem:
             self._report.add("ignored", "shape without an outline", place)

@@ -8,11 +8,14 @@ MAX_BYTES = 50_000_000
 MAX_DEPTH = 200
 """elements nested in one another, copies made by `use` included"""
 
-MAX_NODES = 200_000
+MAX_NODES = 100_000
 """XML elements in a file"""
 
 MAX_ATTRIBUTES = 1_000_000
 """attributes in a file"""
+
+MAX_OWN_ATTRIBUTES = 1_000
+"""attributes of one element: looking one up takes time in proportion to their number"""
 
 MAX_ENTITIES = 100
 """text entities that a file declares"""
@@ -20,17 +23,20 @@ MAX_ENTITIES = 100
 MAX_ENTITY_CHARS = 1_000
 """characters of one such entity"""
 
-MAX_ELEMENTS = 250_000
+MAX_ELEMENTS = 100_000
 """elements visited once every `use` is replaced by a copy"""
 
 MAX_TEXT = 200_000_000
 """characters of attributes read once every `use` is replaced by a copy"""
 
-MAX_SEGMENTS = 2_000_000
+MAX_SEGMENTS = 1_000_000
 """lines and curves of a whole drawing"""
 
 MAX_STYLE_CHARS = 1_000_000
-"""characters of all style sheets together"""
+"""characters of all style sheets together, and again of all unusual `style` attributes"""
+
+MAX_INLINE_CHARS = 100_000
+"""characters of one `style` attribute"""
 
 MAX_STYLE_RULES = 2_000
 """selectors of all style sheets together"""

@@ -28,8 +28,8 @@ def read_svg(
     ----------
     source : path of a file, its contents as bytes, or as text that starts with "<"
     name : of the drawing; by default that of the file
-    close_gap : the ends of a subpath that are at most this far apart are joined, m; by default half of the stroke's
-        width. A gap of 5 % of the subpath's length or more always stays open.
+    close_gap : the ends of a subpath that are at most this far apart are joined, drawing units; by default half of the
+        stroke's width. A gap of 5 % of the subpath's length or more always stays open.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def read_svg(
     LimitError : beyond one of `optplan.jobs.limits`
     """
     if close_gap is not None and not (math.isfinite(close_gap) and close_gap >= 0):
-        raise InputError(f"close_gap is {close_gap} m; expected 0 or more")
+        raise InputError(f"close_gap is {close_gap}; expected 0 or more drawing units")
     opened = open_source(source)
     with located(opened.name):
         root = parse_tree(opened)
@@ -53,7 +53,7 @@ def read_svg(
         elements = tuple(walk.elements(root))
         notes = report.notes()
         if not elements:
-            left_out = "; ".join(f"{note.text} ({note.times})" for note in notes[:5])
+            left_out = "; ".join(f"{note.text} ({note.times})" for note in notes if note.kind == "ignored")
             raise InputError(
                 f"there is nothing to draw; left out: {left_out}" if left_out else "there is nothing to draw"
             )
