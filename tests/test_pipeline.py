@@ -30,7 +30,7 @@ def test_every_shipped_drawing_plans_and_checks(name: str, robot: str) -> None:
     assert between == pytest.approx(plan.ordering.cost, rel=1e-9, abs=1e-9)
     if robot == "beach-rake":
         assert plan.report.figure("continuity order") >= 1
-        assert plan.report.figure("coverage") > 0.98
+        assert plan.report.figure("coverage") > 0.97
 
 
 # what each drawing holds: strokes by tool setting, filled areas, start point
@@ -38,7 +38,7 @@ CONTENTS = {
     "letters": (None, 3, False),
     "logo": (None, 4, False),
     "floral": ({4: 90}, 0, False),
-    "flower": ({3: 3, 2: 1}, 1, True),
+    "flower": ({3: 3, 2: 2}, 1, True),
     "lion": ({4: 13}, 0, True),
     "shark": ({4: 12, 3: 4}, 0, True),
     "wave": ({1: 1}, 0, False),
@@ -53,9 +53,7 @@ def test_drawings_are_understood(name: str) -> None:
     assert (cover.start is not None) == start
     if tools is not None:
         lines = Counter(stroke.tool for stroke in cover.strokes if "/fill" not in stroke.id)
-        lines -= Counter({4: 0})
-        outlines = {tool: count for tool, count in lines.items() if count}
-        assert {tool: outlines.get(tool, 0) for tool in tools} == tools
+        assert lines == tools
 
 
 def test_the_shark_is_enclosed_by_its_triangle() -> None:

@@ -14,6 +14,10 @@ from optplan.domain.robot import DiffDrive, Robot
 CONTROL_PERIOD = 0.1
 """Where lines and arcs meet the curvature steps, and with it the wheels' speeds. The step may be as large as the wheels
 can follow within this time, s: so the robot slows down at such a joint."""
+SHORTEST = 1e-7
+"""Parts of a piece shorter than this are none, m: at a kilometre, differences of arc length are known to 1e-13 m only."""
+RESERVE = 1e-3
+"""Share of the acceleration that is left alone, so that rounding never takes a plan over the limit."""
 HEADING_STEP = 1e-6
 """A direction that changes by more than this between two pieces, rad, is a corner: speed 0."""
 
@@ -51,7 +55,7 @@ def _limits(path: Path, robot: Robot, options: Options) -> tuple[FloatArray, Flo
     work = options.time.work_speed or mobility.work_speed
     transit = options.time.transit_speed or mobility.transit_speed
     cap = np.where(path.tool == RAISED, transit, work)
-    acceleration = np.full(len(path), mobility.acceleration)
+    acceleration = np.full(len(path), mobility.acceleration * (1 - RESERVE))
     if isinstance(mobility, DiffDrive):
         bend = np.maximum(np.abs(path.curvature), np.abs(path.curvature + path.sharpness * path.length))
         outer = 1 + bend * mobility.track / 2
@@ -86,6 +90,8 @@ def _knots(path: Path, robot: Robot, speed: FloatArray, cap: FloatArray, acceler
     moving = length > 0
     peak = np.minimum(cap, np.sqrt((before**2 + after**2) / 2 + acceleration * length))
     peak = np.maximum(peak, np.maximum(before, after))
+    for side in (before, after):  # what is hardly above one of its ends is level with it
+        peak = np.where((peak**2 - side**2) / (2 * acceleration) < SHORTEST, np.maximum(before, after), peak)
     up = (peak**2 - before**2) / (2 * acceleration)
     down = (peak**2 - after**2) / (2 * acceleration)
     cruise = np.maximum(length - up - down, 0.0)
