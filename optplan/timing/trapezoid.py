@@ -15,7 +15,7 @@ CONTROL_PERIOD = 0.1
 """Where lines and arcs meet the curvature steps, and with it the wheels' speeds. The step may be as large as the wheels
 can follow within this time, s: so the robot slows down at such a joint."""
 SHORTEST = 1e-7
-"""Parts of a piece shorter than this are none, m: at a kilometre, differences of arc length are known to 1e-13 m only."""
+"""Parts of a piece shorter than this are none, m: at a kilometre, arc lengths are known to 1e-13 m only."""
 RESERVE = 1e-3
 """Share of the acceleration that is left alone, so that rounding never takes a plan over the limit."""
 HEADING_STEP = 1e-6

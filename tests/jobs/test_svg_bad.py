@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from jobs.svg_texts import HEAD, LINE, svg
 
 from optplan.domain.errors import InputError, LimitError
-from optplan.jobs import limits
-from optplan.jobs.svg import read_svg
+from optplan.jobs.svg import limits, read_svg
 
 OPEN = HEAD + ">"
 NESTED = "".join(f'<!ENTITY l{k} "{f"&l{k - 1};" * 10}">' for k in range(1, 10))

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from optplan.domain.errors import InputError, LimitError
-from optplan.jobs._svg_path import Subpath, parse_path
+from optplan.jobs.svg._path import Subpath, parse_path
 
 
 def only(text: str) -> Subpath:

@@ -11,8 +11,8 @@ import tinycss2
 from lxml import etree
 
 from optplan.domain.errors import LimitError
-from optplan.jobs._svg_report import Report, place_of
-from optplan.jobs.limits import MAX_STYLE_CHARS, MAX_STYLE_RULES, MAX_STYLE_STEPS
+from optplan.jobs.svg._report import Report, place_of
+from optplan.jobs.svg.limits import MAX_STYLE_CHARS, MAX_STYLE_RULES, MAX_STYLE_STEPS
 
 MAX_SELECTOR_TOKENS = 300
 """tokens of one rule's selectors; no drawing program writes as many"""

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from optplan.jobs._svg_report import Report, local_name
-from optplan.jobs._svg_tree import SVG
+from optplan.jobs.svg._report import Report, local_name
+from optplan.jobs.svg._tree import SVG
 
 XLINK = "http://www.w3.org/1999/xlink"
 INKSCAPE = "http://www.inkscape.org/namespaces/inkscape"

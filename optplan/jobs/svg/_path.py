@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from optplan.domain.errors import LimitError
-from optplan.jobs._svg_number import NUMBER, finite, number_run, numbers, refuse_not_finite
-from optplan.jobs.limits import MAX_SEGMENTS
+from optplan.jobs.svg._number import NUMBER, finite, number_run, numbers, refuse_not_finite
+from optplan.jobs.svg.limits import MAX_SEGMENTS
 
 Handles = tuple[complex, complex] | None
 ARC_PIECE = math.pi / 4

@@ -11,16 +11,16 @@ from lxml import etree
 
 from optplan.domain.errors import InputError, LimitError, located
 from optplan.domain.job import Element
-from optplan.jobs._svg_census import INKSCAPE, XLINK, Census, is_svg, unique
-from optplan.jobs._svg_curves import Made, is_area, make_curves
-from optplan.jobs._svg_number import FONT_UNITS, Axis, parse_length
-from optplan.jobs._svg_paint import Painter
-from optplan.jobs._svg_report import Report, local_name, place_of
-from optplan.jobs._svg_shapes import SHAPES, outline
-from optplan.jobs._svg_style import GEOMETRY, INITIAL, Cascade, Style
-from optplan.jobs._svg_transform import IDENTITY, Matrix, multiply, parse_transform, scale_of, translation
-from optplan.jobs._svg_view import Page, viewport_transform
-from optplan.jobs.limits import MAX_DEPTH, MAX_ELEMENTS, MAX_SEGMENTS, MAX_TEXT
+from optplan.jobs.svg._census import INKSCAPE, XLINK, Census, is_svg, unique
+from optplan.jobs.svg._curves import Made, is_area, make_curves
+from optplan.jobs.svg._number import FONT_UNITS, Axis, parse_length
+from optplan.jobs.svg._paint import Painter
+from optplan.jobs.svg._report import Report, local_name, place_of
+from optplan.jobs.svg._shapes import SHAPES, outline
+from optplan.jobs.svg._style import GEOMETRY, INITIAL, Cascade, Style
+from optplan.jobs.svg._transform import IDENTITY, Matrix, multiply, parse_transform, scale_of, translation
+from optplan.jobs.svg._view import Page, viewport_transform
+from optplan.jobs.svg.limits import MAX_DEPTH, MAX_ELEMENTS, MAX_SEGMENTS, MAX_TEXT
 
 _GROUPS = frozenset({"g", "a", "switch"})
 _NOT_DRAWN = frozenset(

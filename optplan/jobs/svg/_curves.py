@@ -10,8 +10,8 @@ import numpy.typing as npt
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.job import Curve
-from optplan.jobs._svg_path import Subpath
-from optplan.jobs._svg_transform import Matrix
+from optplan.jobs.svg._path import Subpath
+from optplan.jobs.svg._transform import Matrix
 
 Complexes = npt.NDArray[np.complex128]
 SAME = 1e-10

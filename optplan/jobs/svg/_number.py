@@ -8,7 +8,7 @@ from itertools import islice
 from typing import Literal, NamedTuple
 
 from optplan.domain.errors import InputError, LimitError
-from optplan.jobs.limits import MAX_SEGMENTS
+from optplan.jobs.svg.limits import MAX_SEGMENTS
 
 NUMBER = r"[-+]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][-+]?[0-9]++)?"
 NUMBERS = re.compile(NUMBER)

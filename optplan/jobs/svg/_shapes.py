@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
-from optplan.jobs._svg_number import Axis, number_run, numbers, refuse_not_finite
-from optplan.jobs._svg_path import Subpath, arc_pieces, parse_path, polyline
+from optplan.jobs.svg._number import Axis, number_run, numbers, refuse_not_finite
+from optplan.jobs.svg._path import Subpath, arc_pieces, parse_path, polyline
 
 SHAPES = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
 

@@ -14,7 +14,7 @@ from xml.parsers import expat
 from lxml import etree
 
 from optplan.domain.errors import InputError, LimitError, located
-from optplan.jobs.limits import (
+from optplan.jobs.svg.limits import (
     MAX_ATTRIBUTES,
     MAX_BYTES,
     MAX_DEPTH,

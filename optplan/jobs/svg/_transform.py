@@ -6,8 +6,8 @@ import math
 import re
 
 from optplan.domain.errors import InputError, LimitError
-from optplan.jobs._svg_number import NUMBER, PIXELS, finite, refuse_not_finite
-from optplan.jobs.limits import MAX_TRANSFORM_CHARS
+from optplan.jobs.svg._number import NUMBER, PIXELS, finite, refuse_not_finite
+from optplan.jobs.svg.limits import MAX_TRANSFORM_CHARS
 
 Matrix = tuple[float, float, float, float, float, float]
 IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)

@@ -11,11 +11,11 @@ from lxml import etree
 
 from optplan.domain.errors import LimitError
 from optplan.domain.job import FillRule
-from optplan.jobs._svg_color import BLACK, NO_PAINT, Paint, parse_paint
-from optplan.jobs._svg_number import FONT_UNITS, NUMBERS, parse_length
-from optplan.jobs._svg_report import Report
-from optplan.jobs._svg_sheet import Declaration, StyleSheets, inline_declarations, is_plain
-from optplan.jobs.limits import MAX_INLINE_CHARS, MAX_STYLE_CHARS
+from optplan.jobs.svg._color import BLACK, NO_PAINT, Paint, parse_paint
+from optplan.jobs.svg._number import FONT_UNITS, NUMBERS, parse_length
+from optplan.jobs.svg._report import Report
+from optplan.jobs.svg._sheet import Declaration, StyleSheets, inline_declarations, is_plain
+from optplan.jobs.svg.limits import MAX_INLINE_CHARS, MAX_STYLE_CHARS
 
 _CASCADE_WORDS = frozenset({"inherit", "initial", "unset", "revert", "revert-layer"})
 CACHED_CHARS = 2000

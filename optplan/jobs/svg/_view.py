@@ -7,9 +7,9 @@ from typing import NamedTuple
 from lxml import etree
 
 from optplan.domain.errors import InputError
-from optplan.jobs._svg_number import FONT_UNITS, PX, Length, number_run, numbers, parse_length, refuse_not_finite
-from optplan.jobs._svg_report import Report, place_of
-from optplan.jobs._svg_transform import IDENTITY, Matrix, multiply, scale_of
+from optplan.jobs.svg._number import FONT_UNITS, PX, Length, number_run, numbers, parse_length, refuse_not_finite
+from optplan.jobs.svg._report import Report, place_of
+from optplan.jobs.svg._transform import IDENTITY, Matrix, multiply, scale_of
 
 Box = tuple[float, float, float, float]
 _ALIGN = {"xmin": 0.0, "xmid": 0.5, "xmax": 1.0, "ymin": 0.0, "ymid": 0.5, "ymax": 1.0}

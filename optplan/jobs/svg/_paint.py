@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from lxml import etree
 
-from optplan.jobs._svg_census import XLINK, is_element
-from optplan.jobs._svg_color import MAX_PAINT_CHARS, Paint, parse_paint
-from optplan.jobs._svg_report import Report, local_name
-from optplan.jobs._svg_sheet import inline_declarations
-from optplan.jobs._svg_style import Style
+from optplan.jobs.svg._census import XLINK, is_element
+from optplan.jobs.svg._color import MAX_PAINT_CHARS, Paint, parse_paint
+from optplan.jobs.svg._report import Report, local_name
+from optplan.jobs.svg._sheet import inline_declarations
+from optplan.jobs.svg._style import Style
 
 STAND_IN = "#808080"
 """colour of gradients and patterns"""

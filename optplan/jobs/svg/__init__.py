@@ -7,12 +7,12 @@ import os
 
 from optplan.domain.errors import InputError, located
 from optplan.domain.job import Drawing
-from optplan.jobs._svg_census import take_census
-from optplan.jobs._svg_report import Report
-from optplan.jobs._svg_style import Cascade
-from optplan.jobs._svg_tree import SVG, open_source, parse_tree
-from optplan.jobs._svg_view import page_of
-from optplan.jobs._svg_walk import Walk
+from optplan.jobs.svg._census import take_census
+from optplan.jobs.svg._report import Report
+from optplan.jobs.svg._style import Cascade
+from optplan.jobs.svg._tree import SVG, open_source, parse_tree
+from optplan.jobs.svg._view import page_of
+from optplan.jobs.svg._walk import Walk
 
 
 def read_svg(
@@ -35,7 +35,7 @@ def read_svg(
     ------
     InputError : not a file, not SVG, entities other than short plain text, NaN or infinity, a page without a size,
         copies in a circle, nothing to draw
-    LimitError : beyond one of `optplan.jobs.limits`
+    LimitError : beyond one of `optplan.jobs.svg.limits`
     """
     if close_gap is not None and not (math.isfinite(close_gap) and close_gap >= 0):
         raise InputError(f"close_gap is {close_gap}; expected 0 or more drawing units")
