@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numba as nb
 import numpy as np
 
+from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
 
 TWO_PI = 2.0 * math.pi
@@ -17,7 +17,7 @@ TOUCHING = 1e-12
 LSL, RSR, LSR, RSL, RLR, LRL = range(6)
 
 
-@nb.njit("float64(float64)", cache=True, nogil=True, inline="always")
+@njit("float64(float64)", cache=True, nogil=True, inline="always")
 def _mod(angle: float) -> float:
     angle = angle % TWO_PI
     if angle > TWO_PI - SNAP or angle < SNAP:
@@ -25,7 +25,7 @@ def _mod(angle: float) -> float:
     return angle
 
 
-@nb.njit("UniTuple(float64, 2)(float64, float64, float64, float64)", cache=True, nogil=True)
+@njit("UniTuple(float64, 2)(float64, float64, float64, float64)", cache=True, nogil=True)
 def _same_side(first: float, total: float, straight: float, d: float) -> tuple[float, float]:
     """Both arcs of LSL or RSR: the first as computed, the second what is left of the whole turning.
 
@@ -42,7 +42,7 @@ def _same_side(first: float, total: float, straight: float, d: float) -> tuple[f
     return first, second
 
 
-@nb.njit(
+@njit(
     "Tuple((float64, int64, float64, float64, float64))(float64, float64, float64, float64, float64, float64, float64)",
     cache=True,
     nogil=True,
@@ -117,13 +117,13 @@ def dubins_shortest(
     return best * radius, word, t, p, q
 
 
-@nb.njit("float64(float64, float64, float64, float64, float64, float64, float64)", cache=True, nogil=True)
+@njit("float64(float64, float64, float64, float64, float64, float64, float64)", cache=True, nogil=True)
 def dubins_length(x0: float, y0: float, t0: float, x1: float, y1: float, t1: float, radius: float) -> float:
     """Length of the shortest Dubins path, m."""
     return dubins_shortest(x0, y0, t0, x1, y1, t1, radius)[0]
 
 
-@nb.njit("float64[::1](float64[:, ::1], float64[:, ::1], float64)", cache=True, nogil=True)
+@njit("float64[::1](float64[:, ::1], float64[:, ::1], float64)", cache=True, nogil=True)
 def dubins_lengths(starts: FloatArray, ends: FloatArray, radius: float) -> FloatArray:
     """Lengths (k,) of the shortest Dubins paths between rows x, y, heading of (k, 3) arrays."""
     lengths = np.empty(len(starts))

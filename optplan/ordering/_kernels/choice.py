@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from optplan.compiled import njit
 from optplan.ordering._kernels.costs import Costs, Structure, arc, link
 from optplan.ordering._kernels.path import EFFORT, Path, Work, at, push, refresh
 

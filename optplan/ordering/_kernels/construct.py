@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.ordering._kernels.costs import Costs, Structure, arc
 

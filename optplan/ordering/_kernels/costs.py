@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
-
+from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.geometry._kernels import dubins_length
 

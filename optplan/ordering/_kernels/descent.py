@@ -6,8 +6,7 @@ piece in constant time, for asymmetric costs too.
 
 from __future__ import annotations
 
-from numba import njit
-
+from optplan.compiled import njit
 from optplan.domain.arrays import IntArray
 from optplan.ordering._kernels.choice import choose_nodes
 from optplan.ordering._kernels.costs import Costs, Structure, link

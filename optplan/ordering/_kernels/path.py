@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.ordering._kernels.costs import Costs, Structure, arc
 

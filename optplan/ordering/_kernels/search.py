@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from optplan.compiled import njit
 from optplan.ordering._kernels.choice import layer, settle
 from optplan.ordering._kernels.costs import Costs, Structure
 from optplan.ordering._kernels.descent import improve, may_swap, swap

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from numba import njit
-
+from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray, IntArray
 
 

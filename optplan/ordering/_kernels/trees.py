@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray, IntArray
 
 
