@@ -90,8 +90,10 @@ def _knots(path: Path, robot: Robot, speed: FloatArray, cap: FloatArray, acceler
     moving = length > 0
     peak = np.minimum(cap, np.sqrt((before**2 + after**2) / 2 + acceleration * length))
     peak = np.maximum(peak, np.maximum(before, after))
-    for side in (before, after):  # what is hardly above one of its ends is level with it
-        peak = np.where((peak**2 - side**2) / (2 * acceleration) < SHORTEST, np.maximum(before, after), peak)
+    faster = np.maximum(before, after)
+    for side in (before, after):  # what is hardly above one of its ends is level with the faster one
+        hardly = (peak**2 - side**2) / (2 * acceleration) < SHORTEST
+        peak = np.where(hardly & (faster > 0), faster, peak)
     up = (peak**2 - before**2) / (2 * acceleration)
     down = (peak**2 - after**2) / (2 * acceleration)
     cruise = np.maximum(length - up - down, 0.0)
