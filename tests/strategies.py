@@ -36,7 +36,7 @@ def polylines(draw: st.DrawFn, least: int = 3, most: int = 12) -> FloatArray:
     count = draw(st.integers(least - 1, most - 1))
     steps = draw(st.lists(st.floats(0.1, 3), min_size=count, max_size=count))
     turns = draw(st.lists(st.floats(-3.05, 3.05), min_size=count, max_size=count))
-    headings = np.cumsum(turns)
+    headings = np.cumsum(np.round(turns, 6))
     moves = array(steps)[:, None] * np.column_stack([np.cos(headings), np.sin(headings)])
     return np.concatenate([np.zeros((1, 2)), np.cumsum(moves, axis=0)])
 

@@ -12,6 +12,9 @@ from optplan.domain.arrays import FloatArray
 TWO_PI = 2.0 * math.pi
 # An angle this close to a full turn is a rounding error of zero: unsnapped, a straight move becomes a full circle.
 SNAP = 1e-9
+# Two circles that touch leave a word with a straight part of length 0 on the edge of where it exists: rounding must not
+# lose it. Square of a length, in radii; the end is missed by less than a quarter of it.
+TOUCH = 1e-10
 LSL, RSR, LSR, RSL, RLR, LRL = range(6)
 
 
@@ -79,8 +82,8 @@ def dubins_shortest(
         best, word, t, p, q = bt + bp + bq, RSR, bt, bp, bq
     # LSR
     square = -2.0 + d * d + 2.0 * cab + 2.0 * d * (sa + sb)
-    if square >= 0.0:
-        bp = math.sqrt(square)
+    if square >= -TOUCH:
+        bp = math.sqrt(max(square, 0.0))
         angle = math.atan2(-ca - cb, d + sa + sb) - math.atan2(-2.0, bp)
         bt = _mod(angle - a)
         bq = _mod(angle - b)
@@ -88,8 +91,8 @@ def dubins_shortest(
             best, word, t, p, q = bt + bp + bq, LSR, bt, bp, bq
     # RSL
     square = -2.0 + d * d + 2.0 * cab - 2.0 * d * (sa + sb)
-    if square >= 0.0:
-        bp = math.sqrt(square)
+    if square >= -TOUCH:
+        bp = math.sqrt(max(square, 0.0))
         angle = math.atan2(ca + cb, d - sa - sb) - math.atan2(2.0, bp)
         bt = _mod(a - angle)
         bq = _mod(b - angle)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 
 import pytest
 from hypothesis import given
@@ -62,7 +63,5 @@ def test_plain_numbers_survive_text(value: float) -> None:
 
 @given(st.text(max_size=12))
 def test_any_text_gives_a_number_or_an_input_error(text: str) -> None:
-    try:
+    with suppress(InputError):
         assert math.isfinite(units.length(text))
-    except InputError:
-        pass
