@@ -92,7 +92,9 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
         visit = visits[row]
         stroke = cover.strokes[visit.stroke]
         if stroke.is_stop:
-            there = np.array([*visit.entry[:2], 0.0 if here is None else here[2]])
+            # where headings count, the ordering problem has given the stop one
+            facing = visit.entry[3] if here is None or metric == "dubins" else here[2]
+            there = np.array([*visit.entry[:2], facing])
             pieces = _pieces([_turn(there, 0.0)])
         else:
             pieces = driven(stroke, visit.entry_vertex, visit.reverse, robot, options)
@@ -164,7 +166,7 @@ def _path(rows: _Rows) -> Path:
     start = columns[0].reshape(-1, 3)
     heading, curvature, length, turn, dwell = columns[1:6]
     tool, stroke = (column.astype(np.int64) for column in columns[6:])
-    keep = (length > 0) | (turn != 0) | (dwell > 0)
+    keep = (length > 0) | (turn != 0) | (stroke >= 0)
     zero = np.zeros(int(keep.sum()))
     return Path(
         start[keep],

@@ -16,8 +16,13 @@ START_HEADINGS = 36
 
 
 def metric_of(robot: Robot, options: Options) -> str:
-    """The metric that "auto" stands for: "dubins" where headings count, else "euclid"."""
+    """The metric that "auto" stands for: "dubins" where headings count, else "euclid".
+
+    Raises InputError when straight moves are asked of a robot that cannot turn on the spot.
+    """
     asked = options.order.metric
+    if asked == "euclid" and robot.heading_counts:
+        raise InputError(f"the metric 'euclid' needs turns on the spot, which {robot.name} cannot; expected 'dubins'")
     return asked if asked != "auto" else "dubins" if robot.heading_counts else "euclid"
 
 

@@ -12,7 +12,7 @@ from optplan.coverage.corners import split_at_corners
 from optplan.coverage.placing import Line, canvas_of, placed, placement
 from optplan.coverage.zigzag import zigzag
 from optplan.domain.arrays import FloatArray
-from optplan.domain.errors import InputError, located
+from optplan.domain.errors import InputError, LimitError, located
 from optplan.domain.job import Drawing, FillSettings, Note
 from optplan.domain.options import CoverOptions, Options, PageOptions
 from optplan.domain.path import RAISED
@@ -69,7 +69,7 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
             strokes += new
             areas += made
         if len(strokes) > MAX_STROKES:
-            raise InputError(f"there are more than {MAX_STROKES} strokes; widen the fill spacing or split it", job.name)
+            raise LimitError(f"there are more than {MAX_STROKES} strokes; widen the fill spacing or split it", job.name)
     strokes = split_at_corners(strokes, robot, options, tolerance)
     if not strokes:
         raise InputError("nothing in this drawing is to be drawn on this canvas", job.name)

@@ -46,7 +46,7 @@ def frozen_floats(values: Any, what: str, shape: Sequence[int | None], *, finite
 def frozen_ints(values: Any, what: str, shape: Sequence[int | None]) -> IntArray:
     """A read-only int64 copy of `values`; see `frozen_floats`."""
     given = np.asarray(values)
-    if given.size and given.dtype.kind not in "iub":
+    if given.size and (given.dtype.kind not in "iub" or given.dtype == np.uint64):
         raise InputError(f"{what} holds {given.dtype} values; expected whole numbers")
     array: IntArray = np.array(given, dtype=np.int64, order="C")
     if array.size == 0:

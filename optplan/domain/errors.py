@@ -50,7 +50,7 @@ def located(where: str) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        if error.where.startswith(where):
+        if error.where == where or error.where.startswith(f"{where}: "):
             raise
         place = f"{where}: {error.where}" if error.where else where
         raise type(error)(error.problem, place) from error.__cause__

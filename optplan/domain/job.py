@@ -180,6 +180,8 @@ class FieldSegment:
             value = getattr(self, name)
             if value is not None:
                 object.__setattr__(self, name, frozen_floats(value, f"segment {self.id!r} {name}", (2,)))
+        if not math.isfinite(self.sweep):
+            raise InputError(f"segment {self.id!r}: the sweep is {self.sweep} rad; expected a finite angle")
         if (self.center is None) != (self.sweep == 0):
             raise InputError(f"segment {self.id!r}: an arc has a centre and a sweep, a line neither")
         if self.center is not None:
@@ -244,6 +246,8 @@ class Facade:
             object.__setattr__(self, "stops", frozen_floats(self.stops, "stops", (None, 2)))
         if not (math.isfinite(self.radius) and self.radius > 0):
             raise InputError(f"the circle radius is {self.radius} m; expected a finite number above 0")
+        if not (math.isfinite(self.tau) and math.isfinite(self.width)):
+            raise InputError(f"the rule of order has tau {self.tau} and width {self.width}; expected finite numbers")
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,6 +272,8 @@ class Surface:
         object.__setattr__(self, "points", frozen_floats(self.points, "points", (None, 3)))
         if self.tool_axes is not None:
             axes = frozen_floats(self.tool_axes, "tool_axes", (len(self.points), 3))
+            if not np.allclose(np.linalg.norm(axes, axis=1), 1, atol=1e-6):
+                raise InputError("tool_axes are not all of unit length")
             object.__setattr__(self, "tool_axes", axes)
         if not (math.isfinite(self.disc_radius) and self.disc_radius > 0):
             raise InputError(f"the disc radius is {self.disc_radius} m; expected a finite number above 0")

@@ -47,10 +47,9 @@ class Stroke:
 
     def __post_init__(self) -> None:
         what = f"stroke {self.id!r}"
-        dimension = np.asarray(self.points).shape[-1] if np.ndim(self.points) == 2 else 2
-        if dimension not in (2, 3):
-            raise InputError(f"{what} has points of {dimension} coordinates; expected 2 or 3")
-        points = frozen_floats(self.points, f"{what} points", (None, dimension))
+        points = frozen_floats(self.points, f"{what} points", (None, None))
+        if points.shape[1] not in (2, 3):
+            raise InputError(f"{what} has points of {points.shape[1]} coordinates; expected 2 or 3")
         object.__setattr__(self, "points", points)
         if len(points) == 0:
             raise InputError(f"{what} has no points; expected at least one")

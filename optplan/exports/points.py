@@ -70,7 +70,7 @@ def csv_text(plan: Plan, spacing: float = SPACING) -> str:
                 timed[1],
                 settings[tool[k]].name,
                 settings[tool[k]].code,
-                strokes[owner] if owner >= 0 else "",
+                strokes[owner] if 0 <= owner < len(strokes) else "",
                 int(stop[k]),
             ]
         )

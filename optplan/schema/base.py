@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationError
 from pydantic_core import CoreSchema, core_schema
 
 from optplan.domain import units
@@ -62,6 +63,8 @@ Sharpness = Annotated[float, _Unit(units.SHARPNESS, "1/m^2", "4 1/m^2")]
 Angle = Annotated[float, _Unit(units.ANGLE, "deg", "30 deg", written="rad")]
 Duration = Annotated[float, _Unit(units.TIME, "s", "2 min")]
 
+Whole = Annotated[int, Field(ge=-(2**31), lt=2**31)]
+"""A whole number that any computer can count to."""
 Point = tuple[float, float]
 Point3 = tuple[float, float, float]
 
@@ -86,7 +89,7 @@ def check_version(data: Any, where: str) -> None:
         raise InputError(f"holds a {type(data).__name__}; expected an object with named parts", where)
     version = data.get("version")
     parts = str(version).split(".")
-    if version is None or len(parts) != 2 or not all(part.isdigit() for part in parts):
+    if len(parts) != 2 or not all(re.fullmatch("[0-9]{1,9}", part) for part in parts):
         raise InputError(f"version is {version!r}; expected {VERSION!r} or an older minor version of it", where)
     major, minor = map(int, parts)
     own_major, own_minor = map(int, VERSION.split("."))
@@ -108,5 +111,5 @@ def parse_json(text: str | bytes, where: str) -> Any:
         return json.loads(text, parse_constant=refuse)
     except json.JSONDecodeError as error:
         raise InputError(f"is not JSON: {error.msg} at line {error.lineno}, column {error.colno}", where) from None
-    except (UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # not UTF-8, numbers without end, nested too deeply
         raise InputError(f"is not JSON: {error}", where) from None

@@ -61,6 +61,8 @@ def write_atomically(file: Path, data: bytes | str, *, overwrite: bool) -> None:
     try:
         if file.exists() and not overwrite:
             raise InputError("exists already; say --force to replace it, or choose another place", str(file))
+        if file.parent.exists() and not file.parent.is_dir():
+            raise InputError(f"cannot be written: {file.parent} is not a folder", str(file))
         file.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.", suffix=".part")
         try:
@@ -80,8 +82,9 @@ def write_atomically(file: Path, data: bytes | str, *, overwrite: bool) -> None:
             raise
     except FileExistsError:
         raise InputError("exists already; say --force to replace it, or choose another place", str(file)) from None
-    except OSError as error:
-        raise InputError(f"cannot be written: {error.strerror or error}", str(file)) from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else None
+        raise InputError(f"cannot be written: {reason or error}", str(file)) from None
 
 
 def _umask() -> int:

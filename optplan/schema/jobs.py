@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Literal
 
 import numpy as np
@@ -22,7 +21,7 @@ from optplan.domain.job import (
     Note,
     Surface,
 )
-from optplan.schema.base import VERSION, Angle, Length, Model, Point, Point3
+from optplan.schema.base import VERSION, Angle, Length, Model, Point, Point3, Whole
 from optplan.schema.options import FillModel
 
 Colour = Annotated[str, Entry(pattern="^#[0-9a-f]{6}$")]
@@ -34,7 +33,7 @@ class NoteModel(Model):
     kind: str
     place: str
     text: str
-    times: int = 1
+    times: Whole = 1
 
 
 class CurveModel(Model):
@@ -55,7 +54,7 @@ class ElementModel(Model):
     stroke_width: float = Entry(1.0, ge=0, description="drawing units")
     fill_rule: Literal["nonzero", "evenodd"] = "nonzero"
     fill_settings: FillModel = Entry(default_factory=FillModel)
-    entry: int | None = None
+    entry: Whole | None = None
     layer: str = ""
 
 
@@ -79,7 +78,7 @@ class SegmentModel(Model):
     end: Point
     center: Point | None = None
     sweep: Angle = 0.0
-    tool: int = Entry(1, ge=0)
+    tool: Whole = Entry(1, ge=0)
     label: str = ""
 
 
@@ -178,7 +177,7 @@ def job_model(job: Job) -> DrawingModel | FieldModel | FacadeModel | SurfaceMode
                     "start": s.start.tolist(),
                     "end": s.end.tolist(),
                     "center": None if s.center is None else s.center.tolist(),
-                    "sweep": math.degrees(s.sweep),
+                    "sweep": f"{s.sweep!r} rad",
                     "tool": s.tool,
                     "label": s.label,
                 }

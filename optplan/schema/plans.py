@@ -19,7 +19,7 @@ from optplan.domain.result import Area, Cover, Plan
 from optplan.domain.robot import Canvas
 from optplan.domain.stop import StopReason
 from optplan.domain.stroke import Stroke, Traversals
-from optplan.schema.base import VERSION, Model, Point, Point3, check_version, fault, parse_json
+from optplan.schema.base import VERSION, Model, Point, Point3, Whole, check_version, fault, parse_json
 from optplan.schema.files import read_bytes, write_atomically
 from optplan.schema.jobs import JobModel, NoteModel, job_from, job_model, note_models, notes_from
 from optplan.schema.options import OptionsModel, options_from, options_model
@@ -34,12 +34,12 @@ class StrokeModel(Model):
 
     id: str
     points: list[Point] | list[Point3]
-    tool: int = 1
+    tool: Whole = 1
     closed: bool = False
     normals: list[Point3] | None = None
     dwell: float = 0.0
     directed: bool = False
-    entry: int | None = None
+    entry: Whole | None = None
     element: str = ""
     layer: str = ""
 
@@ -49,7 +49,7 @@ class AreaModel(Model):
 
     element: str
     rings: list[list[Point]]
-    tool: int
+    tool: Whole
 
 
 class CoverModel(Model):
@@ -57,8 +57,8 @@ class CoverModel(Model):
 
     strokes: list[StrokeModel]
     areas: list[AreaModel] = Entry(default_factory=list)
-    precedence: list[tuple[int, int]] = Entry(default_factory=list)
-    start: Point | None = None
+    precedence: list[tuple[Whole, Whole]] = Entry(default_factory=list)
+    start: PoWhole | None = None
     canvas: CanvasModel | None = None
     notes: list[NoteModel] = Entry(default_factory=list)
 
@@ -66,15 +66,15 @@ class CoverModel(Model):
 class OrderingModel(Model):
     """The solver's answer. `cost` is absent when none was found, `bound` when nothing was proved."""
 
-    nodes: list[int]
+    nodes: list[Whole]
     cost: float | None = None
     bound: float | None = None
     status: Status
     stopped: StopReason
     solver: str
-    seed: int = 0
+    seed: Whole = 0
     seconds: float = 0.0
-    iterations: int = 0
+    iterations: Whole = 0
     message: str = ""
     trace: list[tuple[float, float | None, float | None]] = Entry(default_factory=list)
 
@@ -82,8 +82,8 @@ class OrderingModel(Model):
 class VisitsModel(Model):
     """The chosen traversals in driving order, a column a property."""
 
-    stroke: list[int]
-    entry_vertex: list[int]
+    stroke: list[Whole]
+    entry_vertex: list[Whole]
     reverse: list[bool]
     entry: list[State] = Entry(description="x, y, z, heading, curvature")
     exit: list[State]
@@ -102,8 +102,8 @@ class PathModel(Model):
     length: list[float]
     turn: list[float] | None = None
     dwell: list[float] | None = None
-    tool: list[int]
-    stroke: list[int]
+    tool: list[Whole]
+    stroke: list[Whole]
     orientation: list[tuple[Quaternion, Quaternion]] | None = None
 
 
@@ -123,7 +123,7 @@ class CheckModel(Model):
     value: float | None = None
     limit: float | None = None
     unit: str = ""
-    place: Point | None = None
+    place: PoWhole | None = None
     detail: str = ""
 
 
@@ -235,19 +235,20 @@ def plan_from(model: PlanModel) -> Plan:
 def _check_references(plan: Plan) -> None:
     strokes = 0 if plan.cover is None else len(plan.cover.strokes)
     settings = len(plan.robot.tool.settings)
-    columns: list[tuple[str, object, int]] = []
+    columns: list[tuple[str, object, int, int]] = []  # name, values, least, how many there are
     if plan.visits is not None:
-        columns.append(("visits.stroke", plan.visits.stroke, strokes))
+        columns.append(("visits.stroke", plan.visits.stroke, 0, strokes))
     if plan.path is not None:
-        columns += [("path.stroke", plan.path.stroke, strokes), ("path.tool", plan.path.tool, settings)]
+        columns += [("path.stroke", plan.path.stroke, -1, strokes), ("path.tool", plan.path.tool, 0, settings)]
     if plan.cover is not None:
-        columns.append(("cover.strokes.tool", [stroke.tool for stroke in plan.cover.strokes], settings))
-        columns.append(("cover.precedence", plan.cover.precedence, strokes))
-        columns.append(("cover.areas.tool", [area.tool for area in plan.cover.areas], settings))
-    for name, values, count in columns:
-        numbers = np.asarray(values, dtype=np.int64)
-        if numbers.size and not ((numbers < count).all() and (numbers >= -1).all()):
-            raise InputError(f"{name} names {int(numbers.max())}; there are only {count}")
+        columns.append(("cover.strokes.tool", [stroke.tool for stroke in plan.cover.strokes], 0, settings))
+        columns.append(("cover.precedence", plan.cover.precedence, 0, strokes))
+        columns.append(("cover.areas.tool", [area.tool for area in plan.cover.areas], 0, settings))
+    for name, values, least, count in columns:
+        numbers = np.asarray(values, dtype=np.int64).ravel()
+        wrong = numbers[(numbers < least) | (numbers >= count)]
+        if len(wrong):
+            raise InputError(f"{name} names {wrong[0]}; expected {least}..{count - 1}")
     if plan.visits is not None and plan.cover is not None:
         for stroke, vertex in zip(plan.visits.stroke.tolist(), plan.visits.entry_vertex.tolist(), strict=True):
             if not (stroke >= 0 and 0 <= vertex < len(plan.cover.strokes[stroke].points)):
@@ -323,7 +324,7 @@ def _ordering_from(model: OrderingModel) -> Ordering:
     return Ordering(
         np.array(model.nodes, dtype=np.int64),
         math.inf if model.cost is None else model.cost,
-        -math.inf if model.bound is None else model.bound,
+        _bound(model),
         model.status,
         model.stopped,
         model.solver,
@@ -336,6 +337,12 @@ def _ordering_from(model: OrderingModel) -> Ordering:
             for s, cost, bound in model.trace
         ),
     )
+
+
+def _bound(model: OrderingModel) -> float:
+    if model.bound is None:  # JSON has no infinity: a proof that there is no order, or no proof of anything
+        return math.inf if model.status is Status.INFEASIBLE else -math.inf
+    return model.bound
 
 
 def _visits_model(visits: Traversals) -> VisitsModel:

@@ -111,7 +111,7 @@ def _knots(path: Path, robot: Robot, speed: FloatArray, cap: FloatArray, acceler
             axis=1,
         )
     times[~moving] = 0.0
-    times[~moving, 0] = waiting[~moving]
+    times[~moving, 2] = waiting[~moving]
     steps = np.stack([offset + up, offset + up + cruise, path.offsets[1:]], axis=1)
     speeds = np.stack([np.where(moving, peak, 0.0), np.where(moving, peak, 0.0), np.where(moving, after, 0.0)], axis=1)
     s = np.concatenate([[0.0], np.maximum.accumulate(steps.ravel())])
