@@ -11,6 +11,7 @@ from optplan.connectors.families import metric_of, start_states, transit_radius
 from optplan.coverage.corners import least_radius
 from optplan.coverage.drawing import tolerance_of
 from optplan.domain.arrays import FloatArray, IntArray
+from optplan.domain.errors import InputError
 from optplan.domain.options import Options
 from optplan.domain.ordering import ArcCosts, DubinsCosts, EuclidCosts, OrderingProblem
 from optplan.domain.result import Cover
@@ -105,6 +106,47 @@ def _states(points: FloatArray, vertex: IntArray, heading: FloatArray) -> FloatA
     states[:, : points.shape[1]] = points[vertex]
     states[:, 3] = heading
     return states
+
+
+def visits_of_tour(tour: Sequence[int], strokes: Sequence[Stroke]) -> list[tuple[int, int, bool]]:
+    """Project a tour through cities back to strokes.
+
+    The cities are those of the travelling-salesman form of a drawing, numbered from 1: the start, then in the order of
+    the strokes both ends of an open one and every vertex of a closed one. A tour begins at city 1; -1 ends it.
+
+    Parameters
+    ----------
+    tour : cities in the order of visiting
+    strokes : (m,)
+
+    Returns
+    -------
+    stroke, entry vertex and direction (True: against its points) of each visit; closed strokes are driven all the way
+    round, back to where they were entered
+
+    Raises
+    ------
+    InputError : a city that does not exist, is missing or comes twice, or a tour that leaves a stroke half done
+    """
+    cities = [(k, v) for k, s in enumerate(strokes) for v in (range(len(s.points)) if s.closed else (0, -1))]
+    numbers = list(tour)
+    numbers = numbers[: numbers.index(-1)] if -1 in numbers else numbers
+    if sorted(numbers) != list(range(1, len(cities) + 2)):
+        raise InputError(f"a tour of {len(numbers)} cities; expected each of 1..{len(cities) + 1} once, then -1")
+    if numbers[0] != 1:
+        raise InputError(f"the tour begins at city {numbers[0]}; expected the start, city 1")
+    visits: list[tuple[int, int, bool]] = []
+    at = 1
+    while at < len(numbers):
+        k, vertex = cities[numbers[at] - 2]
+        size = len(strokes[k].points) if strokes[k].closed else 2
+        block = [cities[number - 2] for number in numbers[at : at + size]]
+        if any(stroke != k for stroke, _ in block):
+            raise InputError(f"the tour leaves stroke {strokes[k].id!r} half done; expected its cities together")
+        reverse = vertex == -1 if not strokes[k].closed else block[1][1] == (vertex - 1) % size
+        visits.append((k, vertex % len(strokes[k].points), reverse))
+        at += size
+    return visits
 
 
 def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Options | None = None) -> OrderingProblem:

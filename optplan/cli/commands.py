@@ -19,6 +19,7 @@ from optplan.cli.settings import (
     Direction,
     ElementFill,
     Entries,
+    EntryVertex,
     Inset,
     Iterations,
     Margin,
@@ -36,6 +37,7 @@ from optplan.cli.settings import (
     read_config,
     settings_of,
     tables_of,
+    with_entries,
 )
 from optplan.domain.errors import InputError
 
@@ -106,6 +108,7 @@ def plan_command(
     inset: Inset = None,
     boundary: Boundary = None,
     fill: ElementFill = None,
+    entry: EntryVertex = None,
     solver: SolverName = None,
     metric: Metric = None,
     time_limit: TimeLimit = None,
@@ -125,7 +128,8 @@ def plan_command(
     if print_config:
         print(config_text(options, chosen), end="")
         return
-    _plan_and_write(job, chosen, options, out or Path(f"{job.stem}-plan"), export or [], force, quiet, json, close_gap)
+    folder = out or Path(f"{job.stem}-plan")
+    _plan_and_write(job, chosen, options, folder, export or [], force, quiet, json, close_gap, entry)
 
 
 @app.command()
@@ -148,7 +152,7 @@ def demo(
             number += 1
             folder = Path(f"optplan-demo-{number}")
     options = settings_of({}, {})
-    _plan_and_write(file, robot or USUAL_ROBOT, options, folder, ["csv", "txt"], force, quiet, json, None)
+    _plan_and_write(file, robot or USUAL_ROBOT, options, folder, ["csv", "txt"], force, quiet, json)
 
 
 def _plan_and_write(
@@ -160,7 +164,8 @@ def _plan_and_write(
     force: bool,
     quiet: bool,
     json: bool,
-    close_gap: float | None,
+    close_gap: float | None = None,
+    entry: list[str] | None = None,
 ) -> None:
     import math
 
@@ -179,7 +184,7 @@ def _plan_and_write(
     machine = op.load_robot(robot)
     order = options.order
     with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
-        read = op.read(job, close_gap=close_gap)
+        read = with_entries(op.read(job, close_gap=close_gap), entry)
         rule = StopRule(
             seconds=math.inf if order.seconds is None else order.seconds,
             iterations=order.iterations,
@@ -231,7 +236,7 @@ def _stage(
         raise InputError(f"exists already; {hint}", str(target))
     earlier = _load(file, flags)
     options = settings_of(tables_of(earlier.options), flags)
-    earlier = replace(earlier, options=options)
+    earlier = replace(earlier, job=with_entries(earlier.job, flags.get("entry")), options=options)
     with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
         rule = StopRule(
             seconds=options.order.seconds or math.inf,
@@ -301,6 +306,7 @@ def cover(
     inset: Inset = None,
     boundary: Boundary = None,
     fill: ElementFill = None,
+    entry: EntryVertex = None,
 ) -> None:
     """Cover: from the job to strokes."""
     _stage("cover", file, out, dict(locals()), rest, force, quiet, json)

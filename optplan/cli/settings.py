@@ -11,6 +11,7 @@ import typer
 from optplan.domain.errors import InputError
 
 if TYPE_CHECKING:
+    from optplan.domain.job import Job
     from optplan.domain.options import Options
 
 CONFIG = Path("optplan.toml")
@@ -35,6 +36,9 @@ Boundary = Annotated[
 ElementFill = Annotated[
     list[str] | None,
     typer.Option("--fill", help="Fill of one element: 'ID:direction=45,spacing=30cm,inset=10cm'. Repeatable."),
+]
+EntryVertex = Annotated[
+    list[str] | None, typer.Option("--entry", help="Enter an element at a drawn vertex: 'ID:3'. Repeatable.")
 ]
 SolverName = Annotated[str | None, typer.Option("--solver", "-s", help="See: optplan solvers.")]
 Metric = Annotated[str | None, typer.Option(help="euclid, dubins or auto.")]
@@ -166,6 +170,20 @@ def _element_fill(text: str) -> tuple[str, dict[str, str]]:
     if not (found and id and all(equals and name.strip() and value.strip() for name, equals, value in pairs)):
         raise InputError(f"{text!r} is no fill; expected ID:direction=45,spacing=30cm,inset=10cm", "--fill")
     return id, {name.strip(): value.strip() for name, _, value in pairs}
+
+
+def with_entries(job: Job, texts: list[str] | None) -> Job:
+    """The job with the entry vertices that `--entry ID:K` asks for. Raises InputError."""
+    from optplan.domain.job import Drawing
+
+    for text in texts or ():
+        id, _, vertex = text.rpartition(":")
+        if not (id and vertex.isdecimal()):
+            raise InputError(f"{text!r} is no entry; expected ID:K, K counted from 0", "--entry")
+        if not isinstance(job, Drawing):
+            raise InputError("only elements of drawings have entry vertices", "--entry")
+        job = job.with_element(id, entry=int(vertex))
+    return job
 
 
 def _toml(value: Any) -> str:

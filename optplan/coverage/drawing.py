@@ -115,18 +115,23 @@ def _outlines(mark: Mark, lines: list[Line]) -> list[Stroke]:
 
 
 def _entry(mark: Mark, line: Line, name: str) -> int | None:
-    entry: int | None = mark.element.entry
-    if entry is None:
+    """The vertex of the polyline that is the drawn vertex at which the element must be entered."""
+    wanted: int | None = mark.element.entry
+    if wanted is None:
         return None
-    allowed = range(len(line.points)) if line.closed else (0, len(line.points) - 1)
-    if entry not in allowed:
-        raise InputError(f"must be entered at vertex {entry}; expected one of {allowed}", name)
-    return entry
+    if not 0 <= wanted < len(line.drawn):
+        raise InputError(f"must be entered at vertex {wanted}; it has the vertices 0..{len(line.drawn) - 1}", name)
+    vertex = int(np.argmin(np.linalg.norm(line.points - line.drawn[wanted], axis=1)))
+    if not line.closed and vertex not in (0, len(line.points) - 1):
+        raise InputError(f"must be entered at vertex {wanted}; an open line can only be entered at its ends", name)
+    return vertex
 
 
 def _filled(
     mark: Mark, lines: list[Line], tool: Tool, options: CoverOptions, notes: list[Note]
 ) -> tuple[list[Stroke], list[Area]]:
+    import shapely
+
     element = mark.element
     polygons, crossed = region([line.points for line in lines], element.fill_rule)
     if crossed:
@@ -147,7 +152,8 @@ def _filled(
         if kept < asked.inset:
             text = f"too narrow for lines {asked.inset:.3g} m inside its outline; they keep {kept:.3g} m"
             notes.append(Note("changed", element.id, text))
-        rings = [polygon.exterior, *polygon.interiors]
+        oriented = shapely.orient_polygons(polygon)
+        rings = [oriented.exterior, *oriented.interiors]
         area = Area(element.id, tuple(np.array(ring.coords)[:-1] for ring in rings), setting)
         lost = _lost(area, new, width)
         if lost > LOST:

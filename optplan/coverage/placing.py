@@ -32,8 +32,10 @@ class Line(NamedTuple):
     """A subpath on the canvas."""
 
     points: FloatArray
-    """(n, 2) m; a closed one does not repeat its first point"""
+    """(n, 2) m; a closed one does not repeat its first point, and runs counter-clockwise"""
     closed: bool
+    drawn: FloatArray
+    """(k, 2) m, the vertices it was drawn with"""
 
 
 def canvas_of(page: PageOptions, robot: Robot) -> Canvas | None:
@@ -87,8 +89,17 @@ def placed(element: Element, where: Placement, tolerance: float) -> list[Line]:
         apart = np.any(np.diff(ring, axis=0) != 0, axis=1)
         points = points[apart] if curve.closed else points[np.concatenate([[True], apart])]
         if len(points) > 1:
-            lines.append(Line(points, curve.closed and len(points) > 2))
+            closed = curve.closed and len(points) > 2
+            if closed and signed_area(points) < 0:
+                points = np.concatenate([points[:1], points[:0:-1]])
+            lines.append(Line(points, closed, where.apply(curve.points)))
     return lines
+
+
+def signed_area(ring: FloatArray) -> float:
+    """Area inside a ring (n, 2), m^2; negative when it runs clockwise."""
+    x, y = (ring - ring[0]).T
+    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
 
 
 def _extent(curve: Curve) -> tuple[FloatArray, FloatArray]:

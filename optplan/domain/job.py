@@ -91,7 +91,7 @@ class Element:
     stroke_width : drawing units, transforms counted
     fill_rule : which rings make the area
     fill_settings : how to fill it
-    entry : vertex where it must be entered, or None
+    entry : drawn vertex, counted from 0, where it must be entered, or None
     layer : name of the layer it is on, "" for none
     """
 

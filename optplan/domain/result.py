@@ -22,7 +22,7 @@ class Area:
     Parameters
     ----------
     element : id of the element it came from
-    rings : (n, 2) m each, not repeating the first point; by the even-odd rule they make the area
+    rings : (n, 2) m each, not repeating the first point: the outline counter-clockwise, then the holes clockwise
     tool : index of the tool setting that fills it
     """
 

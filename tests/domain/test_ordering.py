@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strategies import array
+from tests.strategies import array
 
 from optplan.domain.errors import InputError
 from optplan.domain.ordering import (

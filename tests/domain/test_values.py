@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from strategies import RAKE, WHEELS, array
+from tests.strategies import RAKE, WHEELS, array
 
 from optplan.domain.arrays import frozen_bools, frozen_floats, frozen_ints
 from optplan.domain.errors import InputError, LimitError, OptplanError, SolverError, located

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from strategies import angles, array, coordinates, radii, states
+from tests.strategies import angles, array, coordinates, radii, states
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strategies import array
+from tests.strategies import array
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.path import Path

@@ -9,7 +9,7 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from strategies import array, box, circle, seeds, star_shaped
+from tests.strategies import array, box, circle, seeds, star_shaped
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import LimitError

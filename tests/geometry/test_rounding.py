@@ -9,7 +9,7 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from strategies import array, circle, polylines
+from tests.strategies import array, circle, polylines
 
 from optplan.domain.arrays import FloatArray
 from optplan.geometry.rounding import Pieces, inner_vertices, rounded, wrapped

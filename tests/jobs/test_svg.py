@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from jobs.svg_texts import HEAD, LINE, PX, drawing, svg, texts, user_points
+from tests.jobs.svg_texts import HEAD, LINE, PX, drawing, svg, texts, user_points
 
 from optplan.domain.errors import InputError
 from optplan.domain.job import Drawing

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from jobs.svg_texts import HEAD, LINE, svg
+from tests.jobs.svg_texts import HEAD, LINE, svg
 
 from optplan.domain.errors import InputError, LimitError
 from optplan.jobs.svg import limits, read_svg

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from jobs.svg_texts import PX, drawing
+from tests.jobs.svg_texts import PX, drawing
 
 from optplan.domain.robot import Tool, ToolSetting
 from optplan.jobs.syntax import Mark, interpret, is_green, is_red, is_white

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from judge.hand_made import PLOTTER, RAKE, Pen, failures, plan_of
+from tests.judge.hand_made import PLOTTER, RAKE, Pen, failures, plan_of
 
 from optplan.domain.path import Path
 from optplan.domain.result import Area, Cover, Plan

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from judge.hand_made import CAR, PLOTTER, RAKE, Pen, changed, failures, plan_of, profile, road, spoiled, two_squares
+from tests.judge.hand_made import CAR, PLOTTER, RAKE, Pen, changed, failures, plan_of, profile, road, spoiled, two_squares
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.options import OrderOptions, TimeOptions

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from judge.hand_made import (
+from tests.judge.hand_made import (
     CAR,
     PLOTTER,
     RAKE,

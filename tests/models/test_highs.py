@@ -15,7 +15,7 @@ import numpy as np
 import psutil
 import pyomo.environ as pyo
 import pytest
-from ordering_cases import strokes
+from tests.ordering_cases import strokes
 
 from optplan.ordering.arrays import dense_costs
 from optplan_models import highs, highs_worker

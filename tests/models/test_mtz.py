@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyomo.environ as pyo
 import pytest
-from ordering_cases import Case, cases, random_problem
+from tests.ordering_cases import Case, cases, random_problem
 
 from optplan.domain.ordering import OrderingProblem
 from optplan.ordering import solve

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, strokes
+from tests.ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, strokes
 
 from optplan.domain.errors import InputError, SolverError
 from optplan.domain.ordering import EuclidCosts, MatrixCosts, Ordering, OrderingProblem, Status
