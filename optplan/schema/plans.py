@@ -58,7 +58,7 @@ class CoverModel(Model):
     strokes: list[StrokeModel]
     areas: list[AreaModel] = Entry(default_factory=list)
     precedence: list[tuple[Whole, Whole]] = Entry(default_factory=list)
-    start: PoWhole | None = None
+    start: Point | None = None
     canvas: CanvasModel | None = None
     notes: list[NoteModel] = Entry(default_factory=list)
 
@@ -74,7 +74,7 @@ class OrderingModel(Model):
     solver: str
     seed: Whole = 0
     seconds: float = 0.0
-    iterations: Whole = 0
+    iterations: int = 0
     message: str = ""
     trace: list[tuple[float, float | None, float | None]] = Entry(default_factory=list)
 
@@ -123,7 +123,7 @@ class CheckModel(Model):
     value: float | None = None
     limit: float | None = None
     unit: str = ""
-    place: PoWhole | None = None
+    place: Point | None = None
     detail: str = ""
 
 
