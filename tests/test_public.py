@@ -46,7 +46,19 @@ def test_importing_costs_nothing() -> None:
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     loaded = {name.split(".")[0] for name in json.loads(done.stdout)}
     assert "optplan" in loaded
-    heavy = {"numpy", "scipy", "shapely", "numba", "pydantic", "matplotlib", "pyomo", "highspy", "lxml", "typer", "rich"}
+    heavy = {
+        "numpy",
+        "scipy",
+        "shapely",
+        "numba",
+        "pydantic",
+        "matplotlib",
+        "pyomo",
+        "highspy",
+        "lxml",
+        "typer",
+        "rich",
+    }
     assert not loaded & heavy
     assert [name for name in json.loads(done.stdout) if name.startswith("optplan.")] == []
 

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 from schema.whole import OPTIONS, jobs, plan
+from strategies import CAR, PLOTTER, RAKE
 
 from optplan.domain.errors import InputError, LimitError
 from optplan.domain.ordering import Ordering, Status
@@ -29,7 +30,6 @@ from optplan.schema.jobs import JobModel, job_from, job_model
 from optplan.schema.options import OptionsModel, options_from, options_model
 from optplan.schema.plans import PlanModel, load_plan, plan_from_json, plan_json, save_plan
 from optplan.schema.robots import RobotModel, robot_from, robot_model
-from strategies import CAR, PLOTTER, RAKE
 
 STAGES = ("cover", "ordering", "visits", "path", "trajectory", "report")
 

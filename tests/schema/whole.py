@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from strategies import RAKE, array, box
 
 from optplan.domain.job import (
     Curve,
@@ -27,7 +28,6 @@ from optplan.domain.result import Area, Cover, Plan
 from optplan.domain.robot import Canvas
 from optplan.domain.stop import StopReason
 from optplan.domain.stroke import Stroke, Traversals
-from strategies import RAKE, array, box
 
 NOTES = (Note("ignored", "path#a", "text", 3), Note("notice", "", "äöü"))
 THIRD = 1 / 3
