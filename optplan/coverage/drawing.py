@@ -102,7 +102,8 @@ def _outlines(mark: Mark, lines: list[Line]) -> list[Stroke]:
     return [
         Stroke(
             name,
-            line.points,
+            # a ring to travel along is a line that comes back
+            np.concatenate([line.points, line.points[:1]]) if line.closed and mark.outline == RAISED else line.points,
             tool=mark.outline,
             closed=line.closed and mark.outline != RAISED,
             directed=mark.outline == RAISED,
@@ -203,7 +204,8 @@ def _fill_polygon(polygon: Polygon, asked: _Asked, width: float, boundary: bool)
 
     strokes = []
     if boundary:
-        for part in shapely.get_parts(polygon.buffer(-width / 2, join_style="mitre")):
+        inside = polygon.buffer(-width / 2, join_style="mitre")
+        for part in [] if inside.is_empty else shapely.get_parts(inside):
             for ring in (part.exterior, *part.interiors):
                 strokes.append(Stroke("", _apart(np.array(ring.coords)[:-1]), closed=True))
     if strokes and polygon.buffer(-asked.inset, join_style="mitre").is_empty:

@@ -103,8 +103,19 @@ def signed_area(ring: FloatArray) -> float:
 
 
 def _extent(curve: Curve) -> tuple[FloatArray, FloatArray]:
+    """Least and greatest coordinates, of the vertices and of what bulges between them."""
     points = curve.points
     if curve.handles is not None:
-        reach = np.ptp(np.concatenate([points, curve.handles.reshape(-1, 2)]), axis=0).max()
-        points = flatten(curve, max(float(reach) * 1e-4, 1e-12))
+        p0 = points if curve.closed else points[:-1]
+        p3 = np.roll(points, -1, axis=0) if curve.closed else points[1:]
+        p1, p2 = curve.handles[:, 0], curve.handles[:, 1]
+        # a cubic turns back where its derivative, a quadratic in t, is zero: a t^2 - 2 b t + c = 0, both roots stably
+        a, b, c = p3 - 3 * p2 + 3 * p1 - p0, 2 * p1 - p0 - p2, p1 - p0
+        root = b + np.where(b < 0, -1, 1) * np.sqrt(np.maximum(b * b - a * c, 0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = np.stack([root / a, c / root])
+        t = np.where((t > 0) & (t < 1), t, 0.0)  # NaN and what lies outside: the vertex again
+        u = 1 - t
+        bulges = u**3 * p0 + 3 * u**2 * t * p1 + 3 * u * t**2 * p2 + t**3 * p3
+        points = np.concatenate([points, bulges.reshape(-1, 2)])
     return points.min(axis=0), points.max(axis=0)

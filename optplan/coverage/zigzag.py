@@ -95,6 +95,9 @@ def _joined(rows: list[FloatArray], within: Polygon) -> list[FloatArray]:
     below: FloatArray = np.zeros((0, 3))
     for row in rows:
         overlap = (below[:, None, 0] < row[None, :, 1]) & (row[None, :, 0] < below[:, None, 1])
+        alone, ending = np.flatnonzero(~overlap.any(axis=0)), np.flatnonzero(~overlap.any(axis=1))
+        if len(alone) == len(ending) == 1:  # towards the tip of a slanted corner
+            overlap[ending[0], alone[0]] = True
         going_on: dict[int, list[tuple[float, float]]] = {}
         for j, (a, b, y) in enumerate(row.tolist()):
             under = np.flatnonzero(overlap[:, j])

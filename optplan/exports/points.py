@@ -131,7 +131,7 @@ def parse_points(text: str, where: str = "points") -> ToolPoints:
         parts = line.split()
         try:
             x, y, code = float(parts[0]), float(parts[1]), int(parts[2])
-            good = len(parts) == 3 and np.isfinite([x, y]).all() and 0 <= code <= 127
+            good = len(parts) == 3 and "_" not in line and np.isfinite([x, y]).all() and 0 <= code <= 127
         except (ValueError, IndexError):
             good = False
         if not good:

@@ -74,7 +74,7 @@ class OrderingModel(Model):
     solver: str
     seed: Whole = 0
     seconds: float = 0.0
-    iterations: Whole = 0
+    iterations: int = 0
     message: str = ""
     trace: list[tuple[float, float | None, float | None]] = Entry(default_factory=list)
 
