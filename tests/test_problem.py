@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.strategies import CAR, PLOTTER, RAKE, array, box, circle, polylines, star_shaped
 
 from optplan.connectors.driving import connect, driven
 from optplan.connectors.families import metric_of, start_states
@@ -26,6 +25,7 @@ from optplan.geometry.dubins import dubins_path
 from optplan.geometry.paths import ends
 from optplan.judge import verify
 from optplan.problem import DUBINS_ENTRIES, ordering_problem, traversals
+from tests.strategies import CAR, PLOTTER, RAKE, array, box, circle, polylines, star_shaped
 
 PAGE = PageOptions(tolerance=0.05)
 OPEN = Stroke("open", array([[0, 0], [2, 0], [4, 0.5], [4, 5]]))

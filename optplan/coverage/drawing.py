@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from optplan.coverage.corners import split_at_corners
-from optplan.coverage.placing import Line, canvas_of, placed, placement
+from optplan.coverage.placing import Line, canvas_of, counter_clockwise, placed, placement
 from optplan.coverage.zigzag import zigzag
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError, LimitError, located
@@ -207,7 +207,8 @@ def _fill_polygon(polygon: Polygon, asked: _Asked, width: float, boundary: bool)
         inside = polygon.buffer(-width / 2, join_style="mitre")
         for part in [] if inside.is_empty else shapely.get_parts(inside):
             for ring in (part.exterior, *part.interiors):
-                strokes.append(Stroke("", _apart(np.array(ring.coords)[:-1]), closed=True))
+                points = counter_clockwise(_apart(np.array(ring.coords)[:-1]))
+                strokes.append(Stroke("", points, closed=True))
     if strokes and polygon.buffer(-asked.inset, join_style="mitre").is_empty:
         return strokes, asked.inset  # the ring has done it all
     fill = zigzag(polygon, asked.direction, asked.spacing, asked.inset)

@@ -90,8 +90,7 @@ def placed(element: Element, where: Placement, tolerance: float) -> list[Line]:
         points = points[apart] if curve.closed else points[np.concatenate([[True], apart])]
         if len(points) > 1:
             closed = curve.closed and len(points) > 2
-            if closed and signed_area(points) < 0:
-                points = np.concatenate([points[:1], points[:0:-1]])
+            points = counter_clockwise(points) if closed else points
             lines.append(Line(points, closed, where.apply(curve.points)))
     return lines
 
@@ -100,6 +99,11 @@ def signed_area(ring: FloatArray) -> float:
     """Area inside a ring (n, 2), m^2; negative when it runs clockwise."""
     x, y = (ring - ring[0]).T
     return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
+
+
+def counter_clockwise(ring: FloatArray) -> FloatArray:
+    """The ring (n, 2) counter-clockwise, beginning with the same vertex."""
+    return ring if signed_area(ring) >= 0 else np.concatenate([ring[:1], ring[:0:-1]])
 
 
 def _extent(curve: Curve) -> tuple[FloatArray, FloatArray]:

@@ -14,10 +14,9 @@ from optplan.domain.robot import DiffDrive, Robot
 CONTROL_PERIOD = 0.1
 """Where lines and arcs meet the curvature steps, and with it the wheels' speeds. The step may be as large as the wheels
 can follow within this time, s: so the robot slows down at such a joint."""
-SHORTEST = 1e-7
-"""Parts of a piece shorter than this are none, m: at a kilometre, arc lengths are known to 1e-13 m only."""
-RESERVE = 1e-3
-"""Share of the acceleration that is left alone, so that rounding never takes a plan over the limit."""
+SHORTEST = 1e-5
+"""Parts shorter than this are driven at one speed, m: at a kilometre arc lengths are known to 1e-13 m only, and what a
+speed gained along such a part would be rounding."""
 HEADING_STEP = 1e-6
 """A direction that changes by more than this between two pieces, rad, is a corner: speed 0."""
 
@@ -39,6 +38,9 @@ def profile(path: Path, robot: Robot, options: Options | None = None) -> Traject
         return Trajectory(path, np.zeros(1), np.zeros(1), np.zeros(1))
     cap, acceleration = _limits(path, robot, options)
     joint = _joint_speeds(path, robot, cap)
+    short = (path.length > 0) & (path.length < SHORTEST)
+    level = short & (joint[:-1] > 0) & (joint[1:] > 0)
+    acceleration = np.where(level, 0.0, np.where(short, 0.9 * acceleration, acceleration))
     length = path.length.tolist()
     rate = acceleration.tolist()
     speed = joint.tolist()
@@ -55,7 +57,7 @@ def _limits(path: Path, robot: Robot, options: Options) -> tuple[FloatArray, Flo
     work = options.time.work_speed or mobility.work_speed
     transit = options.time.transit_speed or mobility.transit_speed
     cap = np.where(path.tool == RAISED, transit, work)
-    acceleration = np.full(len(path), mobility.acceleration * (1 - RESERVE))
+    acceleration = np.full(len(path), mobility.acceleration)
     if isinstance(mobility, DiffDrive):
         bend = np.maximum(np.abs(path.curvature), np.abs(path.curvature + path.sharpness * path.length))
         outer = 1 + bend * mobility.track / 2
@@ -88,14 +90,14 @@ def _knots(path: Path, robot: Robot, speed: FloatArray, cap: FloatArray, acceler
     """Each piece as up to three parts of constant acceleration; each stop as its waiting time."""
     before, after, length = speed[:-1], speed[1:], path.length
     moving = length > 0
+    rate = np.where(acceleration > 0, acceleration, np.inf)
     peak = np.minimum(cap, np.sqrt((before**2 + after**2) / 2 + acceleration * length))
-    peak = np.maximum(peak, np.maximum(before, after))
     faster = np.maximum(before, after)
     for side in (before, after):  # what is hardly above one of its ends is level with the faster one
-        hardly = (peak**2 - side**2) / (2 * acceleration) < SHORTEST
+        hardly = (peak**2 - side**2) / (2 * rate) < SHORTEST
         peak = np.where(hardly & (faster > 0), faster, peak)
-    up = (peak**2 - before**2) / (2 * acceleration)
-    down = (peak**2 - after**2) / (2 * acceleration)
+    up = (peak**2 - before**2) / (2 * rate)
+    down = (peak**2 - after**2) / (2 * rate)
     cruise = np.maximum(length - up - down, 0.0)
     up = np.where(moving, np.minimum(up, length), 0.0)
     down = np.where(moving, length - up - cruise, 0.0)

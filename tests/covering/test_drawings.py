@@ -11,7 +11,6 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.strategies import CAR, PLOTTER, RAKE, array, box, circle, drawing, element, polylines, star_shaped
 
 import optplan as op
 from optplan.coverage import cover
@@ -25,6 +24,7 @@ from optplan.domain.result import Cover
 from optplan.domain.robot import Canvas
 from optplan.domain.stroke import Stroke
 from optplan.geometry.rounding import inner_vertices
+from tests.strategies import CAR, PLOTTER, RAKE, array, box, circle, drawing, element, polylines, star_shaped
 
 SYNTAX = replace(RAKE, tool=replace(RAKE.tool, stroke_widths=(2.0,), red_is_travel=True, green_is_start=True))
 OWN_SIZE = replace(RAKE, canvas=None)

@@ -10,12 +10,12 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely import affinity
-from tests.strategies import array, box, circle, star_shaped
 
 from optplan.coverage import zigzag as module
 from optplan.coverage.zigzag import zigzag
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import LimitError
+from tests.strategies import array, box, circle, star_shaped
 
 
 def _levels(stroke: FloatArray, direction: float) -> FloatArray:

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.strategies import array
 
 from optplan.domain.errors import InputError
 from optplan.domain.ordering import (
@@ -24,6 +23,7 @@ from optplan.domain.ordering import (
 )
 from optplan.domain.stop import StopReason
 from optplan.geometry.dubins import dubins_lengths
+from tests.strategies import array
 
 
 def _problem(**more: object) -> OrderingProblem:

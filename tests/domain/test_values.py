@@ -8,7 +8,6 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from tests.strategies import RAKE, WHEELS, array
 
 from optplan.domain.arrays import frozen_bools, frozen_floats, frozen_ints
 from optplan.domain.errors import InputError, LimitError, OptplanError, SolverError, located
@@ -19,6 +18,7 @@ from optplan.domain.result import Cover
 from optplan.domain.robot import Arm, Boom, Canvas, DiffDrive, Gantry, Tool, ToolSetting
 from optplan.domain.stop import StopReason, StopRule
 from optplan.domain.stroke import Stroke, Traversals
+from tests.strategies import RAKE, WHEELS, array
 
 LINE = [[0.0, 0.0], [1.0, 0.0]]
 BOX = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]

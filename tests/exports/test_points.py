@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.strategies import RAKE, array, box
 
 from optplan.connectors.driving import connect
 from optplan.domain.errors import InputError, LimitError
@@ -26,6 +25,7 @@ from optplan.exports import points as module
 from optplan.exports.points import COLUMNS, ToolPoints, csv_text, format_points, parse_points, points_text, tool_points
 from optplan.problem import traversals
 from optplan.timing.trapezoid import profile
+from tests.strategies import RAKE, array, box
 
 
 def _plan() -> Plan:

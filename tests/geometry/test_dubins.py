@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from tests.strategies import angles, array, coordinates, radii, states
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.geometry.dubins import WORDS, DubinsPath, dubins_lengths, dubins_path
+from tests.strategies import angles, array, coordinates, radii, states
 
 ORACLE = Path(__file__).parents[2] / "../shared/data/connectors/cc00.csv"
 State = tuple[float, float, float]

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.strategies import array
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.path import Path
 from optplan.geometry.paths import along, displacement, ends, resampled, sampled
+from tests.strategies import array
 
 
 def _integrated(heading: float, curvature: float, sharpness: float, length: float) -> complex:

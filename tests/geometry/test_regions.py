@@ -9,13 +9,13 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.strategies import array, box, circle, seeds, star_shaped
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import LimitError
 from optplan.domain.job import FillRule
 from optplan.geometry import regions
 from optplan.geometry.regions import containment, region
+from tests.strategies import array, box, circle, seeds, star_shaped
 
 RULES = (FillRule.NONZERO, FillRule.EVENODD)
 

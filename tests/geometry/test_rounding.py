@@ -9,10 +9,10 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.strategies import array, circle, polylines
 
 from optplan.domain.arrays import FloatArray
 from optplan.geometry.rounding import Pieces, inner_vertices, rounded, wrapped
+from tests.strategies import array, circle, polylines
 
 tolerances = st.floats(1e-3, 0.3)
 least_radii = st.sampled_from([0.0, 0.05, 0.5, 2.0])

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.jobs.svg_texts import HEAD, LINE, PX, drawing, svg, texts, user_points
 
 from optplan.domain.errors import InputError
 from optplan.domain.job import Drawing
 from optplan.jobs.svg import read_svg
+from tests.jobs.svg_texts import HEAD, LINE, PX, drawing, svg, texts, user_points
 
 
 def points(body: str, attributes: str = 'viewBox="0 0 100 100"') -> list[list[float]]:

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.jobs.svg_texts import HEAD, LINE, svg
 
 from optplan.domain.errors import InputError, LimitError
 from optplan.jobs.svg import limits, read_svg
+from tests.jobs.svg_texts import HEAD, LINE, svg
 
 OPEN = HEAD + ">"
 NESTED = "".join(f'<!ENTITY l{k} "{f"&l{k - 1};" * 10}">' for k in range(1, 10))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from tests.jobs.svg_texts import drawing, texts
 
 SHAPE = 'd="M0 0h9v9z"'

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from tests.jobs.svg_texts import PX, drawing
 
 from optplan.domain.robot import Tool, ToolSetting
 from optplan.jobs.syntax import Mark, interpret, is_green, is_red, is_white
+from tests.jobs.svg_texts import PX, drawing
 
 RAKE = Tool(
     settings=(

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from tests.judge.hand_made import PLOTTER, RAKE, Pen, failures, plan_of
 
 from optplan.domain.path import Path
 from optplan.domain.result import Area, Cover, Plan
 from optplan.domain.stroke import Stroke
 from optplan.judge import verify
+from tests.judge.hand_made import PLOTTER, RAKE, Pen, failures, plan_of
 
 FACETS = 0.007  # share of a round end that its flat sides leave out
 

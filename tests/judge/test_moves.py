@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.judge.hand_made import CAR, PLOTTER, RAKE, Pen, changed, failures, plan_of, profile, road, spoiled, two_squares
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.options import OrderOptions, TimeOptions
@@ -17,6 +16,19 @@ from optplan.domain.report import Check, Report, Verdict
 from optplan.domain.result import Cover, Plan
 from optplan.domain.stroke import Stroke
 from optplan.judge import verify
+from tests.judge.hand_made import (
+    CAR,
+    PLOTTER,
+    RAKE,
+    Pen,
+    changed,
+    failures,
+    plan_of,
+    profile,
+    road,
+    spoiled,
+    two_squares,
+)
 
 
 def moved(plan: Plan, angle: float, shift: tuple[float, float]) -> Plan:

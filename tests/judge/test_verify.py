@@ -8,6 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
+from optplan.domain.errors import InputError
+from optplan.domain.path import Path
+from optplan.domain.report import Report, Verdict
+from optplan.domain.result import Cover, Plan
+from optplan.domain.robot import Canvas, DiffDrive
+from optplan.domain.stroke import Stroke
+from optplan.judge import verify
 from tests.judge.hand_made import (
     CAR,
     PLOTTER,
@@ -22,14 +30,6 @@ from tests.judge.hand_made import (
     square,
     two_squares,
 )
-
-from optplan.domain.errors import InputError
-from optplan.domain.path import Path
-from optplan.domain.report import Report, Verdict
-from optplan.domain.result import Cover, Plan
-from optplan.domain.robot import Canvas, DiffDrive
-from optplan.domain.stroke import Stroke
-from optplan.judge import verify
 
 GOOD: dict[str, Callable[[], Plan]] = {
     "rake": two_squares,

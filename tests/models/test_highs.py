@@ -15,11 +15,11 @@ import numpy as np
 import psutil
 import pyomo.environ as pyo
 import pytest
-from tests.ordering_cases import strokes
 
 from optplan.ordering.arrays import dense_costs
 from optplan_models import highs, highs_worker
 from optplan_models.ordering import mtz
+from tests.ordering_cases import strokes
 
 
 def knapsack(count: int = 12) -> Any:

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pyomo.environ as pyo
 import pytest
-from tests.ordering_cases import Case, cases, random_problem
 
 from optplan.domain.ordering import OrderingProblem
 from optplan.ordering import solve
 from optplan.ordering.arrays import dense_costs
 from optplan_models import highs
 from optplan_models.ordering import mtz
+from tests.ordering_cases import Case, cases, random_problem
 
 CASES = [case for case in cases() if math.isfinite(case.optimum)][::5]
 

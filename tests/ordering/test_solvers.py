@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from tests.ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, strokes
 
 from optplan.domain.errors import InputError, SolverError
 from optplan.domain.ordering import EuclidCosts, MatrixCosts, Ordering, OrderingProblem, Status
 from optplan.domain.progress import Progress
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering import SOLVERS, lower_bound, solve
+from tests.ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, strokes
 
 CASES = list(cases())
 PROVES = {"exact", "brute", "auto"}

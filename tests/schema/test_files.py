@@ -14,8 +14,6 @@ import jsonschema
 import numpy as np
 import pytest
 from pydantic import TypeAdapter
-from tests.schema.whole import OPTIONS, jobs, plan
-from tests.strategies import CAR, PLOTTER, RAKE
 
 from optplan.domain.errors import InputError, LimitError
 from optplan.domain.ordering import Ordering, Status
@@ -30,6 +28,8 @@ from optplan.schema.jobs import JobModel, job_from, job_model
 from optplan.schema.options import OptionsModel, options_from, options_model
 from optplan.schema.plans import PlanModel, load_plan, plan_from_json, plan_json, save_plan
 from optplan.schema.robots import RobotModel, robot_from, robot_model
+from tests.schema.whole import OPTIONS, jobs, plan
+from tests.strategies import CAR, PLOTTER, RAKE
 
 STAGES = ("cover", "ordering", "visits", "path", "trajectory", "report")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from tests.strategies import RAKE, array, box
 
 from optplan.domain.job import (
     Curve,
@@ -28,6 +27,7 @@ from optplan.domain.result import Area, Cover, Plan
 from optplan.domain.robot import Canvas
 from optplan.domain.stop import StopReason
 from optplan.domain.stroke import Stroke, Traversals
+from tests.strategies import RAKE, array, box
 
 NOTES = (Note("ignored", "path#a", "text", 3), Note("notice", "", "äöü"))
 THIRD = 1 / 3

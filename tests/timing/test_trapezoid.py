@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.strategies import PLOTTER, RAKE, TOOL, WHEELS, array, circle, polylines
 
 from optplan.connectors.driving import connect
 from optplan.domain.arrays import FloatArray
@@ -22,6 +21,7 @@ from optplan.geometry.paths import resampled
 from optplan.problem import traversals
 from optplan.timing.sampling import moments
 from optplan.timing.trapezoid import CONTROL_PERIOD, profile, turn_time
+from tests.strategies import PLOTTER, RAKE, TOOL, WHEELS, array, circle, polylines
 
 
 def _line(length: float, tool: int = 1) -> Path:
