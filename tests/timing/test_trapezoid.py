@@ -30,7 +30,7 @@ def _line(length: float, tool: int = 1) -> Path:
 
 
 def _path(points: FloatArray, robot: Robot) -> Path:
-    strokes = (Stroke("a", points), Stroke("b", points + [30, 0]))
+    strokes = (Stroke("a", points), Stroke("b", points + array([30, 0])))
     options = Options(page=PageOptions(tolerance=0.1))
     ways = traversals(strokes, robot, options)
     return connect(ways.take([0, 2]), Cover(strokes), robot, options)
@@ -77,9 +77,8 @@ def test_nothing_takes_no_time() -> None:
 def test_stops_have_their_time() -> None:
     zero = np.zeros(1)
     for angle, dwell in ((0.0, 3.0), (2.0, 0.0), (-2.0, 1.0), (0.01, 0.0)):
-        path = Path(
-            np.zeros((1, 3)), zero, zero, zero, zero, zero, array([angle]), array([dwell]), [0], [-1]
-        )  # type: ignore[arg-type]  # fmt: skip
+        row = np.zeros(1, dtype=np.int64)
+        path = Path(np.zeros((1, 3)), zero, zero, zero, zero, zero, array([angle]), array([dwell]), row, row - 1)
         made = profile(path, RAKE)
         assert made.duration == pytest.approx(dwell + turn_time(abs(angle), RAKE))
         assert made.s.tolist() == [0, 0]
