@@ -136,6 +136,17 @@ def test_wheels_keep_their_limits_in_arcs(points: FloatArray) -> None:
     assert (rate * outer <= tight.acceleration * (1 + 1e-6)).all()
 
 
+@pytest.mark.parametrize("bend", [2.0, -2.0])
+def test_an_arc_takes_its_share_of_the_outer_wheel(bend: float) -> None:
+    zero, row = np.zeros(1), np.zeros(1, dtype=np.int64)
+    path = Path(np.zeros((1, 3)), zero, zero, array([bend]), zero, array([3.0]), zero, zero, row + 1, row)
+    made = profile(path, RAKE)  # the outer wheel runs at 1 + 2 * 0.25 times the speed
+    assert made.t[1] == pytest.approx(0.4 / (4.0 / 1.5))
+    assert made.v.max() == 0.4
+    weak = profile(path, Robot("weak", "", TOOL, replace(WHEELS, wheel_speed=6.0, work_speed=0.5)))
+    assert weak.v.max() == pytest.approx(0.6 / 1.5)
+
+
 def test_speed_drops_where_curvature_jumps() -> None:
     ring = circle(3.0, 60)
     stroke = Stroke("u", np.concatenate([array([[3, -5]]), ring[:31], array([[-3, -5]])]))
