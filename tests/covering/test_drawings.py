@@ -183,7 +183,8 @@ def test_too_many_strokes(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_nearly_closed_lines_are_closed() -> None:
-    svg = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 99 99"><path id="p" d="{}" stroke="black" fill="none"/></svg>'
+    path = '<path id="p" d="{}" stroke="black" fill="none"/>'
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 99 99">{path}</svg>'
     for gap, closed in ((0.01, True), (9.0, False)):
         job = op.read(svg.format(f"M 10 10 H 90 V 90 H 10 V {10 + gap}"))
         assert cover(job, RAKE).strokes[0].closed == closed

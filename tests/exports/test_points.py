@@ -143,7 +143,7 @@ def test_too_many_points(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_files(tmp_path: Path) -> None:
     plan = _plan()
     assert usual_spacing(plan) == 0.05
-    assert usual_spacing(replace(plan, cover=replace(plan.cover, canvas=Canvas(0.3, 0.2)))) == pytest.approx(0.002)
+    assert usual_spacing(replace(plan, cover=Cover((), canvas=Canvas(0.3, 0.2)))) == pytest.approx(0.002)
     for name, form in FORMATS.items():
         file = tmp_path / f"plan{form.suffix}"
         export_plan(plan, name, file)

@@ -37,9 +37,8 @@ def _path(rows: list[tuple[float, float, float, float]]) -> Path:
     columns = array(rows)
     zero = np.zeros(len(rows))
     index = np.zeros(len(rows), dtype=np.int64)
-    return Path(
-        array(start), array(headings), zero, columns[:, 0], columns[:, 1], columns[:, 2], columns[:, 3], zero, index, index
-    )  # fmt: skip
+    curvature, sharpness, length, turn = columns.T
+    return Path(array(start), array(headings), zero, curvature, sharpness, length, turn, zero, index, index)
 
 
 MIXED = _path([(0, 0, 1, 0), (0.5, 0, 2, 0), (0, 0, 0, 1.0), (-1, 0.7, 3, 0), (2, -8, 1.5, 0), (0, 0, 0.4, 0)])
@@ -60,9 +59,9 @@ def test_ends_meet_the_next_starts() -> None:
 
 def test_pieces_in_space_are_straight() -> None:
     zero = np.zeros(1)
-    path = Path(
-        np.zeros((1, 3)), array([math.pi / 2]), array([math.pi / 6]), zero, zero, array([2.0]), zero, zero, [0], [0]
-    )  # type: ignore[arg-type]  # fmt: skip
+    row = np.zeros(1, dtype=np.int64)
+    up, north = array([math.pi / 6]), array([math.pi / 2])
+    path = Path(np.zeros((1, 3)), north, up, zero, zero, array([2.0]), zero, zero, row, row)
     assert along(path, np.array([0]), array([2.0])).position[0] == pytest.approx([0, math.sqrt(3), 1])
 
 

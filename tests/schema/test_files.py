@@ -6,6 +6,7 @@ import json
 import math
 import os
 import random
+import tempfile
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -60,7 +61,8 @@ def _valid(model: Any, data: Any) -> None:
 
 @pytest.mark.parametrize("stages", range(len(STAGES) + 1))
 def test_plans_come_back_equal(tmp_path: Path, stages: int) -> None:
-    whole = replace(plan(), **dict.fromkeys(STAGES[stages:]))
+    later: dict[str, Any] = dict.fromkeys(STAGES[stages:])
+    whole = replace(plan(), **later)
     save_plan(whole, tmp_path / "plan.json")
     assert_same(load_plan(tmp_path / "plan.json"), whole)
     _valid(PlanModel, json.loads((tmp_path / "plan.json").read_text()))
@@ -138,6 +140,10 @@ def test_empty_sections_come_back() -> None:
     visits = Traversals(none, none, none, np.zeros((0, 5)), np.zeros((0, 5)), none, none)  # type: ignore[arg-type]
     whole = Plan(plan().job, RAKE, OPTIONS, Cover(()), visits=visits)
     assert_same(plan_from_json(plan_json(whole)), whole)
+
+
+def _names(folder: Path) -> list[str]:
+    return [file.name for file in folder.iterdir()]
 
 
 def _changed(*place: object, value: object) -> str:
@@ -268,7 +274,7 @@ def test_nothing_is_overwritten_without_asking(tmp_path: Path) -> None:
     assert file.read_text() == "one"
     write_atomically(file, b"three", overwrite=True)
     assert file.read_text() == "three"
-    assert os.listdir(file.parent) == ["plan.json"]
+    assert _names(file.parent) == ["plan.json"]
     assert file.stat().st_mode & 0o777 == 0o666 & ~files._umask()
 
 
@@ -285,7 +291,7 @@ def test_a_crash_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyP
         write_atomically(file, "new", overwrite=True)
     monkeypatch.undo()
     assert file.read_text() == "old"
-    assert os.listdir(tmp_path) == ["plan.json"]
+    assert _names(tmp_path) == ["plan.json"]
 
 
 def test_a_file_that_appears_meanwhile_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -300,7 +306,7 @@ def test_a_file_that_appears_meanwhile_is_kept(tmp_path: Path, monkeypatch: pyte
     with pytest.raises(InputError, match="exists already"):
         write_atomically(file, "mine", overwrite=False)
     assert file.read_text() == "theirs"
-    assert os.listdir(tmp_path) == ["plan.json"]
+    assert _names(tmp_path) == ["plan.json"]
 
 
 def test_an_interrupt_passes_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -310,7 +316,7 @@ def test_an_interrupt_passes_and_leaves_nothing(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(os, "fsync", stop)
     with pytest.raises(KeyboardInterrupt):
         write_atomically(tmp_path / "plan.json", "x", overwrite=False)
-    assert os.listdir(tmp_path) == []
+    assert _names(tmp_path) == []
 
 
 def test_places_that_cannot_be_written(tmp_path: Path) -> None:
@@ -338,7 +344,7 @@ def test_a_refusal_of_the_system_is_an_input_error(tmp_path: Path, monkeypatch: 
     def refuse(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(files.tempfile, "mkstemp", refuse)
+    monkeypatch.setattr(tempfile, "mkstemp", refuse)
     with pytest.raises(InputError, match="cannot be written: Permission denied"):
         write_atomically(tmp_path / "plan.json", "x", overwrite=False)
 

@@ -30,7 +30,7 @@ def _line(length: float, tool: int = 1) -> Path:
 
 
 def _path(points: FloatArray, robot: Robot) -> Path:
-    strokes = (Stroke("a", points), Stroke("b", points + [30, 0]))
+    strokes = (Stroke("a", points), Stroke("b", points + array([30, 0])))
     options = Options(page=PageOptions(tolerance=0.1))
     ways = traversals(strokes, robot, options)
     return connect(ways.take([0, 2]), Cover(strokes), robot, options)
@@ -77,9 +77,8 @@ def test_nothing_takes_no_time() -> None:
 def test_stops_have_their_time() -> None:
     zero = np.zeros(1)
     for angle, dwell in ((0.0, 3.0), (2.0, 0.0), (-2.0, 1.0), (0.01, 0.0)):
-        path = Path(
-            np.zeros((1, 3)), zero, zero, zero, zero, zero, array([angle]), array([dwell]), [0], [-1]
-        )  # type: ignore[arg-type]  # fmt: skip
+        row = np.zeros(1, dtype=np.int64)
+        path = Path(np.zeros((1, 3)), zero, zero, zero, zero, zero, array([angle]), array([dwell]), row, row - 1)
         made = profile(path, RAKE)
         assert made.duration == pytest.approx(dwell + turn_time(abs(angle), RAKE))
         assert made.s.tolist() == [0, 0]
@@ -135,6 +134,17 @@ def test_wheels_keep_their_limits_in_arcs(points: FloatArray) -> None:
     rate = np.abs(np.diff(made.v)[moving] / np.diff(made.t)[moving])
     assert (top * outer <= 0.8 * (1 + 1e-9)).all()
     assert (rate * outer <= tight.acceleration * (1 + 1e-6)).all()
+
+
+@pytest.mark.parametrize("bend", [2.0, -2.0])
+def test_an_arc_takes_its_share_of_the_outer_wheel(bend: float) -> None:
+    zero, row = np.zeros(1), np.zeros(1, dtype=np.int64)
+    path = Path(np.zeros((1, 3)), zero, zero, array([bend]), zero, array([3.0]), zero, zero, row + 1, row)
+    made = profile(path, RAKE)  # the outer wheel runs at 1 + 2 * 0.25 times the speed
+    assert made.t[1] == pytest.approx(0.4 / (4.0 / 1.5))
+    assert made.v.max() == 0.4
+    weak = profile(path, Robot("weak", "", TOOL, replace(WHEELS, wheel_speed=6.0, work_speed=0.5)))
+    assert weak.v.max() == pytest.approx(0.6 / 1.5)
 
 
 def test_speed_drops_where_curvature_jumps() -> None:
