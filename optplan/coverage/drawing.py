@@ -90,8 +90,14 @@ def _offset_note(robot: Robot) -> list[Note]:
 
 
 def _with_settings(job: Drawing, options: CoverOptions) -> Drawing:
-    for id, settings in options.elements:
-        job = job.with_element(id, fill_settings=settings)
+    for id, wanted in options.elements:
+        own = next((element.fill_settings for element in job.elements if element.id == id), FillSettings())
+        merged = FillSettings(
+            own.direction if wanted.direction is None else wanted.direction,
+            own.spacing if wanted.spacing is None else wanted.spacing,
+            own.inset if wanted.inset is None else wanted.inset,
+        )
+        job = job.with_element(id, fill_settings=merged)
     return job
 
 

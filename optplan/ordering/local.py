@@ -13,10 +13,11 @@ from optplan.ordering.arrays import kernel_costs, kernel_structure
 from optplan.ordering.method import Run
 
 ITERATIONS_EACH = 50
-"""Perturbations for each cluster, when nothing else ends the search; at least 2000."""
+"""Perturbations for each cluster when nothing else ends the search, but at least 2000 and at most MOST."""
+MOST = 10_000
 SLICE = {0: 500_000, 1: 500_000, 2: 15_000}
 """Arc costs between two looks at the stop rule, by kind of cost: at most some 0.05 s."""
-NN_SLICE = 5_000_000
+NN_SLICE = 2_000_000
 """Arc costs of nearest neighbours between two looks at the stop rule."""
 NN_WORK = 20_000_000
 """Arc costs spent on trying several first clusters."""
@@ -76,7 +77,7 @@ def local_search(run: Run) -> StopReason:
     """Descent by 2-opt, or-opt and node choice, then perturbation; see the kernel `search` for what an iteration is.
 
     Starts from the given solution, else from nearest neighbours. Without limits of its own it ends after 50
-    iterations for each cluster, at least 2000.
+    iterations for each cluster, at least 2000 and at most 10 000.
     """
     from optplan.ordering._kernels.path import FINISHED, ITERATIONS, SWEEP, Path, Work, refresh
     from optplan.ordering._kernels.search import search
@@ -111,7 +112,7 @@ def local_search(run: Run) -> StopReason:
     limit = run.rule.iterations
     endless = limit is None and math.isfinite(run.rule.seconds)
     if limit is None:
-        limit = 2**62 if endless else max(2000, ITERATIONS_EACH * count)
+        limit = 2**62 if endless else min(max(2000, ITERATIONS_EACH * count), MOST)
     if count <= 2:
         limit = 0  # the descent has seen both orders
     known = run.cost

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ARROWS = 12
-"""Direction arrows along work or travel as long as the picture is wide; no more than 400 in all."""
+"""Direction arrows along work or travel as long as the picture is wide; no more than 100 of each."""
 NUMBERED = 60
 """Up to this many strokes carry their number."""
 CHORD = 0.05
@@ -145,15 +145,15 @@ def _lines(path: Path, rows: BoolArray) -> list[FloatArray]:
     begin = np.repeat(np.cumsum(parts + 1) - parts - 1, parts + 1)
     share = (np.arange(len(piece)) - begin) / np.repeat(parts, parts + 1)
     points = along(path, piece, path.length[piece] * share).position[:, :2]
-    polylines = np.split(points, np.cumsum(parts + 1)[:-1])
-    joined: list[list[FloatArray]] = []
-    for k, line in enumerate(polylines):
-        follows = k > 0 and chosen[k] == chosen[k - 1] + 1 and bool(np.allclose(joined[-1][-1][-1], line[0], atol=1e-9))
-        if follows:
-            joined[-1].append(line[1:])
-        else:
-            joined.append([line])
-    return [np.concatenate(lines) for lines in joined]
+    first, last = np.cumsum(parts + 1) - parts - 1, np.cumsum(parts + 1) - 1
+    # a piece goes on with the one before it when only turns on the spot lie between, and no gap
+    rank = np.searchsorted(np.flatnonzero(path.length > 0), chosen)
+    near = np.abs(points[first[1:]] - points[last[:-1]]).max(axis=1) < 1e-9
+    follows = np.concatenate([[False], (np.diff(rank) == 1) & near])
+    keep = np.ones(len(points), dtype=np.bool_)
+    keep[first[follows]] = False
+    line = np.cumsum(~follows)[np.repeat(np.arange(len(chosen)), parts + 1)][keep]
+    return np.split(points[keep], np.flatnonzero(np.diff(line)) + 1)
 
 
 def _arrows(axes: Axes, path: Path, rows: BoolArray, spacing: float, colour: str, edge: str) -> None:
@@ -163,7 +163,7 @@ def _arrows(axes: Axes, path: Path, rows: BoolArray, spacing: float, colour: str
     if total <= 0:
         return
     offsets = np.concatenate([[0.0], np.cumsum(path.length[chosen])])
-    count = int(np.clip(round(total / spacing), 1, 400))
+    count = int(np.clip(round(total / spacing), 1, 100))
     places = (np.arange(count) + 0.5) * total / count
     row = np.clip(np.searchsorted(offsets, places, side="right") - 1, 0, len(chosen) - 1)
     states = along(path, chosen[row], places - offsets[row])
