@@ -6,6 +6,9 @@
 UV := $(shell command -v uv || echo .tools/bin/uv)
 RUN := .venv/bin/
 export UV_PYTHON_DOWNLOADS := never
+# trust what the machine trusts, also behind a company's proxy (the second name is that of older versions)
+export UV_SYSTEM_CERTS := 1
+export UV_NATIVE_TLS := 1
 # warnings of installed packages are not ours to fix
 export PYTHONWARNINGS :=
 
