@@ -56,6 +56,14 @@ def two(tmp_path: Path) -> str:
     return str(file)
 
 
+@pytest.mark.parametrize("more", [(), ("-o", "two.svg")])
+def test_a_stage_never_writes_over_a_drawing(run: Runner, two: str, more: tuple[str, ...]) -> None:
+    ran = run("cover", two, "--force", *more)
+    assert ran.code == 2
+    assert "is a drawing" in ran.err
+    assert Path(two).read_text() == TWO
+
+
 def test_plan_writes_a_verified_plan_and_its_pictures(run: Runner, two: str) -> None:
     ran = run("plan", two, "-o", "made", "-e", "csv", "-e", "txt")
     assert ran.code == 0

@@ -231,6 +231,9 @@ def _stage(
     from optplan.schema.plans import save_plan
 
     target = out or file
+    if target.suffix.lower() in {".svg", ".svgz"}:
+        hint = "another file" if out else "--output"
+        raise InputError(f"is a drawing, which a plan would overwrite; say {hint}", str(target))
     if target.exists() and not force:
         hint = "say --output for a new file, or --force to replace it"
         raise InputError(f"exists already; {hint}", str(target))

@@ -217,7 +217,7 @@ def _draw_places(axes: Axes, plan: Plan, colours: _Colours) -> None:
         axes.plot([], [], "-", color=colours.work, lw=4, label="tool down")
         axes.plot([], [], "-", color=colours.travel, lw=1, label="tool up")
     if places:
-        axes.legend(loc="upper right", fontsize=7, framealpha=0.85, ncols=2)
+        axes.legend(loc="lower right", bbox_to_anchor=(1, 1), fontsize=7, frameon=False, ncols=4, columnspacing=1)
     canvas = plan.cover.canvas
     if canvas is not None and canvas.margin > 0:
         m = canvas.margin
@@ -240,7 +240,9 @@ def _draw_title(made: Figure, plan: Plan, colours: _Colours) -> None:
         facts.append(f"{minutes}:{seconds:02d} min")
     if ordering is not None and math.isfinite(ordering.gap):
         facts.append(
-            "order proved optimal" if ordering.gap <= 1e-6 else f"order within {100 * ordering.gap:.1f} % of the bound"
+            "order proved optimal"
+            if ordering.gap <= 1e-6
+            else f"no order is more than {100 * min(ordering.gap, 1.0):.1f} % shorter"
         )
     elif plan.cover is not None and not facts:
         facts.append(f"{len(plan.cover.strokes)} strokes")
@@ -251,4 +253,4 @@ def _draw_title(made: Figure, plan: Plan, colours: _Colours) -> None:
 
 
 def _metres(length: float) -> str:
-    return f"{length:.1f} m" if length >= 1 else f"{1000 * length:.0f} mm"
+    return f"{length:.1f} m" if length >= 1 or length == 0 else f"{1000 * length:.0f} mm"

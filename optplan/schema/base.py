@@ -76,6 +76,8 @@ def fault(error: ValidationError, where: str) -> InputError:
         place = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in item["loc"]).lstrip(".")
         given = "" if isinstance(item["input"], dict | list) else f" (given: {str(item['input'])[:60]!r})"
         message = item["msg"].removeprefix("Value error, ")
+        if item["type"] == "extra_forbidden":
+            message = "is not known"
         lines.append(f"{place}: {message}{given}" if place else f"{message}{given}")
     more = error.error_count() - len(lines)
     if more > 0:
