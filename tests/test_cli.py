@@ -262,3 +262,10 @@ def test_help_needs_nothing_heavy() -> None:
     )
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert out.strip().endswith("HEAVY []")
+
+
+def test_an_error_is_one_line_whatever_the_name_of_the_file(run: Runner) -> None:
+    ran = run("plan", "two\nlines\x1b[31m.svg")
+    assert ran.code == 2
+    assert ran.err.count("\n") == 1
+    assert "\x1b" not in ran.err

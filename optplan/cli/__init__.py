@@ -13,7 +13,9 @@ def main() -> None:
     try:
         app()
     except OptplanError as error:
-        print(f"error: {error}", file=sys.stderr)
+        # names of files and elements may hold anything, line breaks and half characters too
+        line = "".join(c if c.isprintable() else repr(c)[1:-1] for c in str(error))
+        print(f"error: {line}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)

@@ -53,7 +53,10 @@ def quantity(text: str | float, units: dict[str, float], default: str) -> float:
             raise InputError(f"{text!r} is not a quantity; expected a number with a unit, such as '2.5 {default}'")
         number, unit = float(match[1]), match[2] or default
     else:
-        number, unit = float(text), default
+        try:
+            number, unit = float(text), default
+        except OverflowError:
+            raise InputError("is too large a number; expected a finite one") from None
     if unit not in units:
         raise InputError(f"{text!r} has the unit {unit!r}; expected one of {', '.join(units)}")
     value = number * units[unit]

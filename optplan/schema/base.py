@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -86,8 +87,10 @@ def check_version(data: Any, where: str) -> None:
         raise InputError(f"holds a {type(data).__name__}; expected an object with named parts", where)
     version = data.get("version")
     parts = str(version).split(".")
-    if version is None or len(parts) != 2 or not all(part.isdigit() for part in parts):
-        raise InputError(f"version is {version!r}; expected {VERSION!r} or an older minor version of it", where)
+    if version is None or len(parts) != 2 or not all(re.fullmatch("[0-9]{1,9}", part) for part in parts):
+        raise InputError(
+            f"version is {str(version)[:60]!r}; expected {VERSION!r} or an older minor version of it", where
+        )
     major, minor = map(int, parts)
     own_major, own_minor = map(int, VERSION.split("."))
     if major != own_major or minor > own_minor:
@@ -108,5 +111,5 @@ def parse_json(text: str | bytes, where: str) -> Any:
         return json.loads(text, parse_constant=refuse)
     except json.JSONDecodeError as error:
         raise InputError(f"is not JSON: {error.msg} at line {error.lineno}, column {error.colno}", where) from None
-    except (UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # no Unicode text, a whole number too long to convert
         raise InputError(f"is not JSON: {error}", where) from None
