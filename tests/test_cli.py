@@ -269,3 +269,18 @@ def test_an_error_is_one_line_whatever_the_name_of_the_file(run: Runner) -> None
     assert ran.code == 2
     assert ran.err.count("\n") == 1
     assert "\x1b" not in ran.err
+
+
+@pytest.mark.parametrize("flags", [["--no-such-flag"], ["x.svg", "--seed", "abc"], []])
+def test_a_wrong_flag_is_one_line_too(run: Runner, flags: list[str]) -> None:
+    ran = run("plan", *flags)
+    assert ran.code == 2
+    assert ran.err.startswith("error: ")
+    assert ran.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("flags", [["--iterations", "9" * 23], ["--start", "1e308,0"], ["--start", "1e300,0"]])
+def test_numbers_beyond_all_measure_are_refused(run: Runner, two: str, flags: list[str]) -> None:
+    ran = run("plan", two, *flags)
+    assert ran.code == 2
+    assert not Path("two-plan").exists()

@@ -26,6 +26,8 @@ from optplan.jobs.syntax import Mark, interpret
 if TYPE_CHECKING:
     from shapely import Polygon
 
+SAME_POINT = 1e-8
+"""m within which neighbouring points of a fill are one."""
 LOST = 0.05
 """Share of an area that may stay untouched without a notice: the corners of any fill."""
 REACHED = 0.8
@@ -198,16 +200,24 @@ def _fill_polygon(polygon: Polygon, asked: _Asked, width: float, boundary: bool)
     strokes = []
     if boundary:
         for part in shapely.get_parts(polygon.buffer(-width / 2, join_style="mitre")):
+            if part.is_empty:  # the whole polygon is narrower than the tool
+                continue
             for ring in (part.exterior, *part.interiors):
-                strokes.append(Stroke("", _apart(np.array(ring.coords)[:-1]), closed=True))
+                around = _apart(np.array(ring.coords)[:-1])
+                if np.abs(around[-1] - around[0]).max() <= SAME_POINT:
+                    around = around[:-1]
+                if len(around) > 2:
+                    strokes.append(Stroke("", around, closed=True))
     if strokes and polygon.buffer(-asked.inset, join_style="mitre").is_empty:
         return strokes, asked.inset  # the ring has done it all
     fill = zigzag(polygon, asked.direction, asked.spacing, asked.inset)
-    return [*strokes, *(Stroke("", _apart(points)) for points in fill.strokes)], fill.inset
+    lines = [points for points in map(_apart, fill.strokes) if len(points) > 1]
+    return [*strokes, *(Stroke("", points) for points in lines)], fill.inset
 
 
 def _apart(points: FloatArray) -> FloatArray:
-    keep = np.concatenate([[True], np.any(np.diff(points, axis=0) != 0, axis=1)])
+    """Points without those that all but coincide with the one before: insets leave such."""
+    keep = np.concatenate([[True], np.any(np.abs(np.diff(points, axis=0)) > SAME_POINT, axis=1)])
     kept: FloatArray = points[keep]
     return kept
 

@@ -84,8 +84,8 @@ def write_atomically(file: Path, data: bytes | str, *, overwrite: bool) -> None:
             raise
     except FileExistsError:
         raise InputError("exists already; say --force to replace it, or choose another place", str(file)) from None
-    except OSError as error:
-        raise InputError(f"cannot be written: {error.strerror or error}", str(file)) from None
+    except (OSError, ValueError) as error:  # a ValueError is a name that holds a zero byte
+        raise InputError(f"cannot be written: {getattr(error, 'strerror', None) or error}", str(file)) from None
 
 
 def _umask() -> int:

@@ -245,7 +245,10 @@ def _check_references(plan: Plan) -> None:
         columns.append(("cover.precedence", plan.cover.precedence, strokes))
         columns.append(("cover.areas.tool", [area.tool for area in plan.cover.areas], settings))
     for name, values, count in columns:
-        numbers = np.asarray(values, dtype=np.int64)
+        try:
+            numbers = np.asarray(values, dtype=np.int64)
+        except OverflowError:
+            raise InputError(f"{name} holds a number beyond all count; there are only {count}") from None
         if numbers.size and not ((numbers < count).all() and (numbers >= -1).all()):
             raise InputError(f"{name} names {int(numbers.max())}; there are only {count}")
     if plan.visits is not None and plan.cover is not None:
@@ -321,7 +324,7 @@ def _ordering_model(ordering: Ordering) -> OrderingModel:
 
 def _ordering_from(model: OrderingModel) -> Ordering:
     return Ordering(
-        np.array(model.nodes, dtype=np.int64),
+        np.array(model.nodes),
         math.inf if model.cost is None else model.cost,
         -math.inf if model.bound is None else model.bound,
         model.status,
@@ -364,8 +367,6 @@ def _path_from(model: PathModel) -> Path:
     zero = np.zeros(len(model.length))
     arrays: dict[str, Any] = {name: zero if value is None else _array(value) for name, value in columns.items()}
     arrays["start"] = arrays["start"].reshape(-1, 3)
-    for name in ("tool", "stroke"):
-        arrays[name] = arrays[name].astype(np.int64)
     return Path(**arrays, orientation=None if model.orientation is None else _array(model.orientation))
 
 
