@@ -52,6 +52,8 @@ def plan(
     InputError : the job, the robot or the options are wrong
     SolverError : the solver that was asked for does not take this problem
     """
+    if not isinstance(job, Job):
+        raise InputError(f"the job is {job!r:.60}; expected what optplan.read returns")
     return plan_from(Plan(job, load_robot(robot), options or Options()), "cover", progress, stop)
 
 

@@ -270,3 +270,25 @@ def test_help_needs_nothing_heavy() -> None:
     )
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert out.strip().endswith("HEAVY []")
+
+
+def test_an_error_is_one_line_whatever_the_name_of_the_file(run: Runner) -> None:
+    ran = run("plan", "two\nlines\x1b[31m.svg")
+    assert ran.code == 2
+    assert ran.err.count("\n") == 1
+    assert "\x1b" not in ran.err
+
+
+@pytest.mark.parametrize("flags", [["--no-such-flag"], ["x.svg", "--seed", "abc"], []])
+def test_a_wrong_flag_is_one_line_too(run: Runner, flags: list[str]) -> None:
+    ran = run("plan", *flags)
+    assert ran.code == 2
+    assert ran.err.startswith("error: ")
+    assert ran.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("flags", [["--iterations", "9" * 23], ["--start", "1e308,0"], ["--start", "1e300,0"]])
+def test_numbers_beyond_all_measure_are_refused(run: Runner, two: str, flags: list[str]) -> None:
+    ran = run("plan", two, *flags)
+    assert ran.code == 2
+    assert not Path("two-plan").exists()

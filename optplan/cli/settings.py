@@ -83,7 +83,7 @@ def read_config(file: Path | None) -> dict[str, Any]:
         file = CONFIG
     try:
         settings = tomllib.loads(read_text(file))
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
         raise InputError(f"is not TOML: {error}", str(file)) from None
     robot = settings.get("robot")
     if robot is not None and not isinstance(robot, str):

@@ -26,12 +26,12 @@ from optplan.jobs.syntax import Mark, interpret
 if TYPE_CHECKING:
     from shapely import Polygon
 
+SAME_POINT = 1e-8
+"""m within which neighbouring points of a fill are one."""
 LOST = 0.05
 """Share of an area that may stay untouched without a notice: the corners of any fill."""
 REACHED = 0.8
 """Share of an area that a tool setting has to reach to be the one that fills it."""
-OVERLAPPING = 0.9
-"""Where the inset outline is driven too, lines begin this many tool widths from the border."""
 MAX_STROKES = 100_000
 """Most strokes that one plan may have."""
 
@@ -188,11 +188,11 @@ def _fitting(polygon: Polygon, tool: Tool) -> int:
 
 
 def _asked(own: FillSettings, options: CoverOptions, width: float) -> _Asked:
-    usual_inset = OVERLAPPING * width if options.boundary else width / 2
     return _Asked(
         options.direction if own.direction is None else own.direction,
         own.spacing or options.spacing or width,
-        next((inset for inset in (own.inset, options.inset) if inset is not None), usual_inset),
+        # with a border, lines run up to the middle of its mark
+        next((inset for inset in (own.inset, options.inset) if inset is not None), width / 2),
     )
 
 
@@ -206,23 +206,30 @@ class _Asked(NamedTuple):
 
 def _fill_polygon(polygon: Polygon, asked: _Asked, width: float, boundary: bool) -> tuple[list[Stroke], float]:
     """Strokes of one polygon, and the inset that its lines keep, m."""
+    strokes = _border(polygon, width) if boundary else []
+    fill = zigzag(polygon, asked.direction, asked.spacing, asked.inset, width if strokes else 0.0)
+    lines = [points for points in map(_apart, fill.strokes) if len(points) > 1]
+    return [*strokes, *(Stroke("", points) for points in lines)], fill.inset
+
+
+def _border(polygon: Polygon, width: float) -> list[Stroke]:
+    """Closed strokes half a tool width inside the outline; none where the polygon is narrower than the tool."""
     import shapely
 
     strokes = []
-    if boundary:
-        inside = polygon.buffer(-width / 2, join_style="mitre")
-        for part in [] if inside.is_empty else shapely.get_parts(inside):
-            for ring in (part.exterior, *part.interiors):
-                points = counter_clockwise(_apart(np.array(ring.coords)[:-1]))
-                strokes.append(Stroke("", points, closed=True))
-    if strokes and polygon.buffer(-asked.inset, join_style="mitre").is_empty:
-        return strokes, asked.inset  # the ring has done it all
-    fill = zigzag(polygon, asked.direction, asked.spacing, asked.inset)
-    return [*strokes, *(Stroke("", _apart(points)) for points in fill.strokes)], fill.inset
+    for part in shapely.get_parts(polygon.buffer(-width / 2, join_style="mitre")):
+        for ring in () if part.is_empty else (part.exterior, *part.interiors):
+            around = _apart(np.array(ring.coords)[:-1])
+            if np.abs(around[-1] - around[0]).max() <= SAME_POINT:
+                around = around[:-1]
+            if len(around) > 2:
+                strokes.append(Stroke("", counter_clockwise(around), closed=True))
+    return strokes
 
 
 def _apart(points: FloatArray) -> FloatArray:
-    keep = np.concatenate([[True], np.any(np.diff(points, axis=0) != 0, axis=1)])
+    """Points without those that all but coincide with the one before: insets leave such."""
+    keep = np.concatenate([[True], np.any(np.abs(np.diff(points, axis=0)) > SAME_POINT, axis=1)])
     kept: FloatArray = points[keep]
     return kept
 

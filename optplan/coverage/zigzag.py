@@ -26,7 +26,7 @@ class Fill(NamedTuple):
     """m actually kept from the outline: less than asked where the polygon is too narrow"""
 
 
-def zigzag(polygon: Polygon, direction: float, spacing: float, inset: float) -> Fill:
+def zigzag(polygon: Polygon, direction: float, spacing: float, inset: float, border: float = 0.0) -> Fill:
     """Fill a polygon with parallel lines, joined into as few strokes as their neighbourhood allows.
 
     Parameters
@@ -36,6 +36,9 @@ def zigzag(polygon: Polygon, direction: float, spacing: float, inset: float) -> 
     spacing : greatest distance between neighbouring lines, m, > 0. The lines are spread evenly.
     inset : of the lines from the outline, m, >= 0. A polygon that vanishes under it is filled with half of it, a
         quarter, and so on; in the end along its middle line in the given direction.
+    border : width of the mark along the outline that is made already, m. Lines are spread over what it leaves, and
+        there are none where it leaves nothing. With border <= inset + spacing / 2 nothing stays bare along sides that
+        run with the lines.
 
     Raises
     ------
@@ -49,32 +52,38 @@ def zigzag(polygon: Polygon, direction: float, spacing: float, inset: float) -> 
     for kept in (inset, inset / 2, inset / 4, inset / 8, 0.0):
         # mitred: an inset of a straight-sided polygon stays straight-sided
         inner = turned.buffer(-kept, join_style="mitre") if kept > 0 else turned
-        if not inner.is_empty:
+        if not inner.is_empty or border > 0:
             break
     strokes: list[FloatArray] = []
     for part in shapely.get_parts(inner):
         if part.geom_type == "Polygon" and part.area > 0:
-            strokes += _joined(_rows(part, spacing), turned)
+            strokes += _joined(_rows(part, spacing, border - kept), turned)
     back = np.array([[math.cos(direction), math.sin(direction)], [-math.sin(direction), math.cos(direction)]])
     return Fill([stroke @ back for stroke in strokes], kept)
 
 
-def _rows(part: Polygon, spacing: float) -> list[FloatArray]:
-    """Horizontal intervals (k, 3) of x from, x to, y for each line across the part, from the bottom up."""
+def _rows(part: Polygon, spacing: float, done: float) -> list[FloatArray]:
+    """Horizontal intervals (k, 3) of x from, x to, y for each line across the part, from the bottom up.
+
+    done : how far from the part's border everything is marked already, m; nothing is where it is not above 0
+    """
     import shapely
 
     left, bottom, right, top = part.bounds
-    height = top - bottom
-    count = math.ceil(height / spacing - 1e-9) + 1
-    if count > MAX_LINES:
+    height = top - bottom - 2 * max(done, 0.0)
+    gaps = math.ceil(height / spacing - 1e-9)
+    if gaps > MAX_LINES:
         raise LimitError(
-            f"a fill of {height:g} m at a spacing of {spacing:g} m needs {count} lines; at most {MAX_LINES} are made"
+            f"a fill of {height:g} m at a spacing of {spacing:g} m needs {gaps} lines; at most {MAX_LINES} are made"
         )
-    # The outermost lines lie on the inset outline itself; a hair inside they cut it instead of touching it.
-    hair = height * 1e-7
-    levels = np.linspace(bottom + hair, top - hair, count)
-    if height < spacing / 10:  # two lines would all but coincide
+    if done > 0:  # marks side by side from border to border
+        levels = bottom + done + height * (np.arange(max(gaps, 0)) + 0.5) / max(gaps, 1)
+    elif height < spacing / 10:  # two lines would all but coincide
         levels = np.array([(bottom + top) / 2])
+    else:
+        # The outermost lines lie on the inset outline itself; a hair inside they cut it instead of touching it.
+        hair = height * 1e-7
+        levels = np.linspace(bottom + hair, top - hair, gaps + 1)
     rows = []
     for y in levels.tolist():
         cut = shapely.get_parts(shapely.intersection(part, shapely.LineString([(left - 1, y), (right + 1, y)])))

@@ -14,6 +14,9 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
+MAX_NUMBER = 1e30
+"""Largest finite number in SI units: beyond, squares and sums of lengths overflow."""
+
 
 def frozen_floats(values: Any, what: str, shape: Sequence[int | None], *, finite: bool = True) -> FloatArray:
     """A read-only float64 copy of `values`.
@@ -23,7 +26,7 @@ def frozen_floats(values: Any, what: str, shape: Sequence[int | None], *, finite
     values : anything NumPy can turn into numbers
     what : name used in error messages
     shape : expected shape; None leaves a dimension free
-    finite : refuse NaN and infinity (else only NaN)
+    finite : refuse NaN, infinity and whatever is beyond `MAX_NUMBER` (else only NaN)
 
     Raises
     ------
@@ -31,7 +34,7 @@ def frozen_floats(values: Any, what: str, shape: Sequence[int | None], *, finite
     """
     try:
         array: FloatArray = np.array(values, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError(f"{what} is not an array of numbers ({error})") from None
     _check_shape(array.shape, what, shape)
     bad = ~np.isfinite(array) if finite else np.isnan(array)
@@ -39,13 +42,19 @@ def frozen_floats(values: Any, what: str, shape: Sequence[int | None], *, finite
         place = tuple(int(k) for k in np.argwhere(bad)[0])
         at = "" if not place else str(list(place))
         raise InputError(f"{what}{at} is {array[place]}; expected a {'finite ' if finite else ''}number")
+    if finite and (large := np.abs(array) > MAX_NUMBER).any():
+        value = array[large].flat[0]
+        raise InputError(f"{what} holds {value:.3g}, which is absurdly large; expected at most {MAX_NUMBER:g}")
     array.setflags(write=False)
     return array
 
 
 def frozen_ints(values: Any, what: str, shape: Sequence[int | None]) -> IntArray:
     """A read-only int64 copy of `values`; see `frozen_floats`."""
-    given = np.asarray(values)
+    try:
+        given = np.asarray(values)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{what} is not an array of whole numbers ({error})") from None
     if given.size and (given.dtype.kind not in "iub" or given.dtype == np.uint64):
         raise InputError(f"{what} holds {given.dtype} values; expected whole numbers")
     array: IntArray = np.array(given, dtype=np.int64, order="C")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from optplan.domain.arrays import MAX_NUMBER
 from optplan.domain.errors import InputError
 from optplan.domain.job import FillSettings
 
@@ -81,12 +82,14 @@ class OrderOptions:
         if self.metric not in METRICS:
             raise InputError(f"there is no metric {self.metric!r}; expected one of {', '.join(METRICS)}")
         _above_zero("order", seconds=self.seconds)
-        if self.iterations is not None and self.iterations < 0:
-            raise InputError(f"order iterations is {self.iterations}; expected 0 or more")
+        if self.iterations is not None and not 0 <= self.iterations < 2**62:
+            raise InputError(f"order iterations is {self.iterations}; expected 0..2^62 - 1")
         if not 0 <= self.seed < 2**31:
             raise InputError(f"order seed is {self.seed}; expected 0..2^31 - 1")
-        if self.start is not None and not all(map(math.isfinite, self.start)):
-            raise InputError(f"order start is {self.start}; expected two finite numbers of metres")
+        if self.start is not None and (
+            len(tuple(self.start)) != 2 or not all(abs(x) <= MAX_NUMBER for x in self.start)
+        ):
+            raise InputError(f"order start is {self.start}; expected two numbers of metres, at most {MAX_NUMBER:g}")
         if self.entries is not None and self.entries < 1:
             raise InputError(f"order entries is {self.entries}; expected 1 or more")
 

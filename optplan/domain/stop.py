@@ -47,8 +47,8 @@ class StopRule:
     def __post_init__(self) -> None:
         if not self.seconds > 0:
             raise InputError(f"the time limit is {self.seconds} s; expected more than 0")
-        if self.iterations is not None and self.iterations < 0:
-            raise InputError(f"the iteration limit is {self.iterations}; expected 0 or more")
+        if self.iterations is not None and not 0 <= self.iterations < 2**62:
+            raise InputError(f"the iteration limit is {self.iterations}; expected 0..2^62 - 1")
         if math.isnan(self.target):
             raise InputError("the target cost is NaN; expected a number")
 

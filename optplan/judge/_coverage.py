@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -20,6 +21,10 @@ from optplan.judge._integrate import Samples
 NAMES = ("coverage", "area coverage", "overspill")
 QUADRANT = 8
 """Segments of a quarter circle around the end of a mark; both sides of a comparison are drawn alike."""
+_BIT = 8
+"""Segments that are outlined in one go where a line curls."""
+_CURLED = 20 * math.pi
+"""rad of turning below which a line is outlined in one go."""
 _GRID = 1e-8
 """m, of the grid that saves an overlay which fails in floating point."""
 
@@ -189,7 +194,26 @@ def _driven_marks(shapely: Any, path: Path, samples: Samples, robot: Robot, limi
 
 
 def _buffers(shapely: Any, lines: Any, widths: FloatArray) -> Any:
-    return shapely.buffer(np.array(lines, dtype=object), widths / 2, quad_segs=QUADRANT)
+    lines = np.array(lines, dtype=object)
+    curled = np.array([_curls(shapely.get_coordinates(line), w) for line, w in zip(lines, widths, strict=True)], bool)
+    made = np.full(len(lines), None, dtype=object)
+    made[~curled] = shapely.buffer(lines[~curled], widths[~curled] / 2, quad_segs=QUADRANT)
+    for k in np.flatnonzero(curled).tolist():
+        line = shapely.get_coordinates(lines[k])
+        bits = [shapely.linestrings(line[i : i + _BIT + 1]) for i in range(0, len(line) - 1, _BIT)]
+        made[k] = _union(shapely, shapely.buffer(bits, widths[k] / 2, quad_segs=QUADRANT))
+    return made
+
+
+def _curls(line: FloatArray, width: float) -> bool:
+    """Whether a line turns round and round within its own mark. To outline such a mark in one go takes time that grows
+    with the cube of its vertices; bit by bit it is quick."""
+    if len(line) <= 2 * _BIT:
+        return False
+    step = np.diff(line, axis=0)
+    heading = np.arctan2(step[:, 1], step[:, 0])
+    turned = float(np.abs((np.diff(heading) + np.pi) % (2 * np.pi) - np.pi).sum())
+    return turned > _CURLED and turned * width > float(np.linalg.norm(step, axis=1).sum())
 
 
 def _area(shapely: Any, area: Area) -> Any:

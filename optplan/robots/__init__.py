@@ -52,7 +52,7 @@ def _read(file: Path) -> Robot:
     else:
         try:
             data = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
+        except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
             raise InputError(f"is not TOML: {error}", str(file)) from None
     check_version(data, str(file))
     try:

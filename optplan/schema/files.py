@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import stat
 import tempfile
 from pathlib import Path
 
@@ -18,13 +19,16 @@ def read_bytes(file: Path, limit: int = MAX_JSON_BYTES) -> bytes:
 
     Raises
     ------
-    InputError : it is missing, a folder, or may not be read
+    InputError : it is missing, no ordinary file, or may not be read
     LimitError : it is larger than `limit` bytes
     """
     try:
         if file.is_dir():
             raise InputError("is a folder; expected a file", str(file))
-        size = file.stat().st_size
+        state = file.stat()
+        if not stat.S_ISREG(state.st_mode):  # a pipe could keep us waiting for ever
+            raise InputError("is not an ordinary file; expected one", str(file))
+        size = state.st_size
         if size > limit:
             raise LimitError(f"has {size / 2**20:.0f} MB; at most {limit / 2**20:.0f} MB are read", str(file))
         with file.open("rb") as stream:

@@ -322,7 +322,7 @@ def _ordering_model(ordering: Ordering) -> OrderingModel:
 
 def _ordering_from(model: OrderingModel) -> Ordering:
     return Ordering(
-        np.array(model.nodes, dtype=np.int64),
+        np.array(model.nodes),
         math.inf if model.cost is None else model.cost,
         _bound(model),
         model.status,
@@ -371,8 +371,6 @@ def _path_from(model: PathModel) -> Path:
     zero = np.zeros(len(model.length))
     arrays: dict[str, Any] = {name: zero if value is None else _array(value) for name, value in columns.items()}
     arrays["start"] = arrays["start"].reshape(-1, 3)
-    for name in ("tool", "stroke"):
-        arrays[name] = arrays[name].astype(np.int64)
     return Path(**arrays, orientation=None if model.orientation is None else _array(model.orientation))
 
 
