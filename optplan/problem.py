@@ -160,11 +160,11 @@ def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Opti
 
     Raises
     ------
-    InputError : a metric that this robot cannot have
+    InputError : a metric that this robot cannot have, or a start outside the canvas
     """
     options = options or Options()
     metric = metric_of(robot, options)
-    start = options.order.start or cover.start
+    start = _start(cover, options)
     costs: ArcCosts
     if metric == "dubins":
         from optplan.geometry.dubins import dubins_lengths
@@ -178,3 +178,14 @@ def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Opti
         place = None if start is None else np.array([*start, 0.0])
         begin = np.zeros(0) if place is None else np.linalg.norm(ways.entry[:, :3] - place, axis=1)
     return OrderingProblem(ways.stroke, costs, start_costs=begin, precedence=np.array(cover.precedence).reshape(-1, 2))
+
+
+def _start(cover: Cover, options: Options) -> tuple[float, float] | None:
+    """Where the robot stands: as the options say, else as the drawing does."""
+    start, canvas = options.order.start or cover.start, cover.canvas
+    if start is None or canvas is None:
+        return start
+    if not (0 <= start[0] <= canvas.width and 0 <= start[1] <= canvas.height):
+        size = f"{canvas.width:g} x {canvas.height:g} m"
+        raise InputError(f"the start ({start[0]:g}, {start[1]:g}) lies outside the canvas of {size}")
+    return start

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import sys
 import tomllib
 from pathlib import Path
@@ -178,7 +177,7 @@ def test_flags_win_over_the_configuration_file_and_that_over_defaults(run: Runne
     assert printed["robot"] == "pen-plotter"
     assert printed["order"]["seed"] == 9
     assert printed["order"]["seconds"] == 3
-    assert printed["cover"]["direction"] == f"{math.radians(45)!r} rad"
+    assert printed["cover"]["direction"] == "45 deg"
     assert printed["order"]["solver"] == "auto"
     # a file of the usual name in the current folder needs no flag, and what was printed can be read again
     Path("optplan.toml").write_text(run("plan", two, "-c", "own.toml", "--print-config").out)

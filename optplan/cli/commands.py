@@ -178,6 +178,8 @@ def _plan_and_write(
         raise InputError(f"there is no format {unknown[0]!r}; expected one of {', '.join(FORMATS)}", "--export")
     targets = [folder / "plan.json", folder / "picture.png", folder / "picture.svg"]
     targets += [folder / f"plan{FORMATS[name].suffix}" for name in export]
+    if folder.exists() and not folder.is_dir():
+        raise InputError("is a file; expected a folder for the plan and its pictures", str(folder))
     for target in targets:  # find out before the work, not after it
         if target.exists() and not force:
             raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
@@ -271,8 +273,8 @@ def _print_stage(plan: Plan, stage: str) -> None:
         output.print_order(plan.ordering)
     if plan.path is not None and plan.report is None:
         down = float(plan.path.length[plan.path.tool != RAISED].sum())
-        up = float(plan.path.length.sum()) - down
-        print(f"path: {len(plan.path)} pieces, {down:.3f} m tool down, {up:.3f} m tool up")
+        up = float(plan.path.length[(plan.path.tool == RAISED) & (plan.path.stroke < 0)].sum())
+        print(f"path: {len(plan.path)} pieces, {down:.3f} m tool down, {up:.3f} m tool up between strokes")
     if plan.trajectory is not None and plan.report is None:
         print(f"time: {plan.trajectory.duration:.1f} s")
     if plan.report is not None:

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from optplan.domain.job import Note
 from optplan.domain.options import Options
 from optplan.domain.robot import Robot
 from optplan.domain.stroke import Stroke
@@ -30,6 +31,20 @@ def split_at_corners(strokes: list[Stroke], robot: Robot, options: Options, tole
         return strokes
     radius = least_radius(robot, options)
     return [part for stroke in strokes for part in _split(stroke, tolerance, radius, options.connect.corner)]
+
+
+def tight_notes(strokes: list[Stroke], robot: Robot, options: Options, tolerance: float) -> list[Note]:
+    """A notice for each element with curves too tight to be driven without stopping, or splitting, in between."""
+    radius, corner = least_radius(robot, options), options.connect.corner
+    stops: dict[str, int] = {}
+    for stroke in strokes:
+        if len(stroke.points) > 2:
+            vertices = inner_vertices(stroke.points, stroke.closed, tolerance, radius, corner)
+            count = int((vertices.corner & (np.abs(vertices.deflection) <= corner)).sum())
+            stops[stroke.element] = stops.get(stroke.element, 0) + count
+    does = "stops and turns" if robot.mobility.turns_on_spot else "lifts the tool and comes back"
+    text = f"curves tighter than a radius of {radius:.2g} m: the robot {does} along them"
+    return [Note("notice", element, text, count) for element, count in stops.items() if count]
 
 
 def _split(stroke: Stroke, tolerance: float, radius: float, corner: float) -> list[Stroke]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from optplan.coverage.corners import split_at_corners
+from optplan.coverage.corners import split_at_corners, tight_notes
 from optplan.coverage.placing import Line, canvas_of, counter_clockwise, placed, placement
 from optplan.coverage.zigzag import zigzag
 from optplan.domain.arrays import FloatArray
@@ -50,13 +50,15 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
         reason = "every element is white, without style, or a start point"
         raise InputError(f"nothing in this drawing is to be drawn: {reason}", job.name)
     canvas = canvas_of(options.page, robot)
+    notes = [*read.notes, *_offset_note(robot)]
+    if canvas is None:
+        notes.append(Note("notice", robot.name, "has no canvas: the drawing keeps the size it has on paper"))
     with located(job.name):
         where = placement([mark.element for mark in read.marks if mark.drawn or mark.start], canvas)
     tolerance = tolerance_of(options.page, robot.tool)
 
     strokes: list[Stroke] = []
     areas: list[Area] = []
-    notes = [*read.notes, *_offset_note(robot)]
     for done, mark in enumerate(drawn):
         progress(Progress("cover", done / len(drawn), message=mark.element.id))
         lines = placed(mark.element, where, tolerance)
@@ -70,6 +72,7 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
             areas += made
         if len(strokes) > MAX_STROKES:
             raise LimitError(f"there are more than {MAX_STROKES} strokes; widen the fill spacing or split it", job.name)
+    notes += tight_notes(strokes, robot, options, tolerance)
     strokes = split_at_corners(strokes, robot, options, tolerance)
     if not strokes:
         raise InputError("nothing in this drawing is to be drawn on this canvas", job.name)

@@ -14,6 +14,9 @@ from optplan.domain.options import PageOptions
 from optplan.domain.robot import Canvas, Robot
 from optplan.geometry.flatten import flatten
 
+CLOSE = 1e-2
+"""Neighbouring points nearer than this share of the tolerance are one."""
+
 
 @dataclass(frozen=True)
 class Placement:
@@ -84,9 +87,9 @@ def placed(element: Element, where: Placement, tolerance: float) -> list[Line]:
     lines = []
     for curve in element.curves:
         points = where.apply(flatten(curve, tolerance / where.scale))
-        # scaling may bring points together that were apart on paper
+        # points that all but coincide have no direction between them worth turning to
         ring = np.concatenate([points, points[:1]]) if curve.closed else points
-        apart = np.any(np.diff(ring, axis=0) != 0, axis=1)
+        apart = np.abs(np.diff(ring, axis=0)).max(axis=1) > CLOSE * tolerance
         points = points[apart] if curve.closed else points[np.concatenate([[True], apart])]
         if len(points) > 1:
             closed = curve.closed and len(points) > 2

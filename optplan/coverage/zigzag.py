@@ -72,18 +72,19 @@ def _rows(part: Polygon, spacing: float, done: float) -> list[FloatArray]:
     left, bottom, right, top = part.bounds
     height = top - bottom - 2 * max(done, 0.0)
     gaps = math.ceil(height / spacing - 1e-9)
-    if gaps > MAX_LINES:
+    count = max(gaps, 0) if done > 0 else gaps + 1
+    if count > MAX_LINES:
         raise LimitError(
-            f"a fill of {height:g} m at a spacing of {spacing:g} m needs {gaps} lines; at most {MAX_LINES} are made"
+            f"a fill of {height:g} m at a spacing of {spacing:g} m needs {count} lines; at most {MAX_LINES} are made"
         )
     if done > 0:  # marks side by side from border to border
-        levels = bottom + done + height * (np.arange(max(gaps, 0)) + 0.5) / max(gaps, 1)
+        levels = bottom + done + height * (np.arange(count) + 0.5) / max(count, 1)
     elif height < spacing / 10:  # two lines would all but coincide
         levels = np.array([(bottom + top) / 2])
     else:
         # The outermost lines lie on the inset outline itself; a hair inside they cut it instead of touching it.
         hair = height * 1e-7
-        levels = np.linspace(bottom + hair, top - hair, gaps + 1)
+        levels = np.linspace(bottom + hair, top - hair, count)
     rows = []
     for y in levels.tolist():
         cut = shapely.get_parts(shapely.intersection(part, shapely.LineString([(left - 1, y), (right + 1, y)])))

@@ -102,8 +102,8 @@ def _mark(element: Element, tool: Tool, notes: list[Note]) -> Mark:
     elif stroke is not None:
         travel = tool.red_is_travel and is_red(stroke)
         outline = 0 if travel else tool.setting_for(element.stroke_width)
-    elif not filled:
-        notes.append(Note("notice", element.id, "white area: not drawn"))
+    if fill is not None and is_white(fill):
+        notes.append(Note("notice", element.id, "white area: not drawn, and not cut out of what lies below it"))
     return Mark(element, outline, filled, False, layer)
 
 

@@ -233,7 +233,7 @@ def _draw_title(made: Figure, plan: Plan, colours: _Colours) -> None:
     path, ordering = plan.path, plan.ordering
     if path is not None:
         down = float(path.length[path.tool != RAISED].sum())
-        up = float(path.length.sum()) - down
+        up = float(path.length[(path.tool == RAISED) & (path.stroke < 0)].sum())
         facts += [f"{_metres(down)} tool down", f"{_metres(up)} tool up"]
     if plan.trajectory is not None:
         minutes, seconds = divmod(round(plan.trajectory.duration), 60)

@@ -43,7 +43,9 @@ class _Unit:
                 raise ValueError(error.problem) from None
 
         def write(value: float) -> str:
-            return f"{value!r} {self.written}"
+            pretty = f"{round(value / self.table[self.default], 9):.12g} {self.default}"
+            # what people read, where it says the same number
+            return pretty if convert(pretty) == value else f"{value!r} {self.written}"
 
         writer = core_schema.plain_serializer_function_ser_schema(write, when_used="json-unless-none")
         return core_schema.no_info_before_validator_function(
@@ -92,8 +94,8 @@ def check_version(data: Any, where: str) -> None:
     version = data.get("version")
     parts = str(version).split(".")
     if len(parts) != 2 or not all(re.fullmatch("[0-9]{1,9}", part) for part in parts):
-        shown = str(version)[:60]
-        raise InputError(f"version is {shown!r}; expected {VERSION!r} or an older minor version of it", where)
+        shown = repr(version)[:60]
+        raise InputError(f"version is {shown}; expected {VERSION!r} or an older minor version of it", where)
     major, minor = map(int, parts)
     own_major, own_minor = map(int, VERSION.split("."))
     if major != own_major or minor > own_minor:
