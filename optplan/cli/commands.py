@@ -173,6 +173,8 @@ def _plan_and_write(
         raise InputError(f"there is no format {unknown[0]!r}; expected one of {', '.join(FORMATS)}", "--export")
     targets = [folder / "plan.json", folder / "picture.png", folder / "picture.svg"]
     targets += [folder / f"plan{FORMATS[name].suffix}" for name in export]
+    if folder.exists() and not folder.is_dir():
+        raise InputError("is a file; expected a folder", str(folder))
     for target in targets:  # find out before the work, not after it
         if target.exists() and not force:
             raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
