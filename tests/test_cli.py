@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -291,3 +293,28 @@ def test_numbers_beyond_all_measure_are_refused(run: Runner, two: str, flags: li
     ran = run("plan", two, *flags)
     assert ran.code == 2
     assert not Path("two-plan").exists()
+
+
+def test_a_file_in_place_of_the_folder_is_found_before_the_work(run: Runner, two: str) -> None:
+    Path("made").write_text("mine")
+    ran = run("plan", two, "-o", "made")
+    assert ran.code == 2
+    assert "expected a folder" in ran.err
+    assert Path("made").read_text() == "mine"
+
+
+def test_a_file_name_that_is_no_text_is_planned_all_the_same(run: Runner) -> None:
+    name = os.fsdecode(b"two-\xff.svg")
+    Path(name).write_text(TWO)
+    assert run("plan", name, "-o", "made").code == 0
+    assert op.load_plan("made/plan.json").job.name == "two-\ufffd"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device to write to")
+def test_a_full_disk_behind_stdout_is_one_line() -> None:
+    with Path("/dev/full").open("w") as full:
+        ran = subprocess.run(
+            [sys.executable, "-m", "optplan", "robots"], stdout=full, stderr=-1, text=True, check=False
+        )
+    assert ran.returncode == 2
+    assert ran.stderr.count("\n") == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 
 
@@ -12,6 +13,8 @@ def main() -> None:
     from optplan.cli.commands import app
     from optplan.domain.errors import OptplanError
 
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # names of files may hold what the terminal cannot show
     try:
         sys.exit(app(sys.argv[1:] or ["--help"], standalone_mode=False))
     except OptplanError as error:
@@ -25,6 +28,9 @@ def main() -> None:
         # the reader of our output has gone: nothing left to say, not even on exit
         sys.stdout = sys.stderr
         sys.exit(0)
+    except OSError as error:
+        sys.stdout = sys.stderr  # what could not be written is not tried again on exit
+        _complain(f"the output cannot be written: {error.strerror or error}")
 
 
 def _complain(text: str) -> None:

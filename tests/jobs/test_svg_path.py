@@ -235,3 +235,10 @@ def test_well_formed_data_is_read_to_its_end(text: str) -> None:
 def test_other_data_breaks_or_is_an_input_error(text: str) -> None:
     with contextlib.suppress(InputError):
         parse_path(text)
+
+
+def test_an_arc_of_a_radius_next_to_nothing_stays_finite() -> None:
+    (path,), problem = parse_path("M0 0a3540 1.9969e-300 0 0 0 0 202815")
+    assert problem is None
+    assert all(cmath.isfinite(point) for point in path.points)
+    assert path.points[-1] == 202815j

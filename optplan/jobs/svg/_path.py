@@ -80,6 +80,10 @@ def arc_pieces(
         yield [center + p + reach * out, center + q - reach * into, center + q]
 
 
+LARGEST_RADIUS = 1e60
+"""Radius from which an arc, grown to reach its end, is a line."""
+
+
 def add_arc(path: Subpath, rx: float, ry: float, turn: float, large: bool, positive: bool, end: complex) -> None:
     """Append the arc of an A command: radii, turn of the x axis (degrees), the two flags, end point."""
     begin = path.points[-1]
@@ -94,7 +98,7 @@ def add_arc(path: Subpath, rx: float, ry: float, turn: float, large: bool, posit
     half = (begin - end) / 2 * cmath.rect(1, -angle)
     u = complex(half.real / rx, half.imag / ry)
     size = math.hypot(u.real, u.imag)
-    if size == 0 or not math.isfinite(size):
+    if size == 0 or not max(rx, ry) * max(size, 1.0) < LARGEST_RADIUS:
         path.line(end)
         return
     if size > 1:

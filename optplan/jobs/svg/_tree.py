@@ -89,7 +89,9 @@ def _open_file(path: str) -> Source:
         raise InputError("there is no such file; expected an SVG file", path) from None
     except (OSError, ValueError) as error:
         raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", path[:200]) from None
-    return Source(path, Path(path).stem, data)
+    # bytes of a name that are no text cannot be written into a plan
+    stem = os.fsencode(Path(path).stem).decode("utf-8", "replace")
+    return Source(path, stem, data)
 
 
 def _decompress(data: bytes) -> bytes:
