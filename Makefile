@@ -47,5 +47,5 @@ clean:
 	python3 -m pip install --quiet --disable-pip-version-check --target .tools uv
 
 .venv/.ready: pyproject.toml uv.lock | $(UV)
-	$(UV) sync --frozen --quiet
+	$(UV) sync --frozen --quiet --compile-bytecode
 	@touch $@

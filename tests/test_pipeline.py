@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -93,3 +94,44 @@ def test_stages_are_reported_in_order() -> None:
     seen: list[str] = []
     op.plan(op.read(op.instance("wave")), progress=lambda event: seen.append(event.stage))
     assert list(dict.fromkeys(seen)) == ["cover", "order", "connect", "time", "verify"]
+
+
+def _failed(plan: op.Plan) -> set[str]:
+    return {check.name for check in op.verify(plan).checks if check.verdict.value == "failed"}
+
+
+def test_the_judge_finds_costs_and_bounds_that_are_a_little_too_high() -> None:
+    plan = _plan("wave", "line-marker", start=(5.0, 5.0))
+    assert plan.ordering is not None
+    assert _failed(plan) == set()
+    lie = replace(plan.ordering, cost=1.01 * plan.ordering.cost, bound=1.01 * plan.ordering.bound)
+    assert _failed(replace(plan, ordering=lie)) == {"cost"}
+
+
+def test_the_judge_finds_turns_that_are_a_little_too_quick() -> None:
+    plan = _plan("flower")
+    made = plan.trajectory
+    assert made is not None
+    turns = np.flatnonzero((np.diff(made.s) == 0) & (np.diff(made.t) > 0))
+    shorter = made.t.copy()
+    shorter[turns[1] + 1 :] -= 0.05 * (made.t[turns[1] + 1] - made.t[turns[1]])
+    assert _failed(replace(plan, trajectory=replace(made, t=shorter))) == {"time"}
+
+
+def test_an_area_has_no_bare_stripes_along_sides_that_run_with_its_lines() -> None:
+    for direction in (0.0, 30.0, 90.0):
+        options = op.Options(cover=op.CoverOptions(direction=np.radians(direction)), order=op.OrderOptions(solver="nn"))
+        report = op.plan(op.read(op.instance("letters")), "beach-rake", options).report
+        assert report is not None
+        assert report.figure("area coverage") > 0.995
+
+
+def test_curves_that_stop_the_robot_are_told() -> None:
+    cover = op.cover(op.read(op.instance("fish")), op.load_robot("beach-rake"))
+    tight = {note.place for note in cover.notes if "tighter" in note.text}
+    assert "ellipse2" in tight  # a bubble of 0.44 m
+
+
+def test_a_start_outside_the_canvas_is_refused() -> None:
+    with pytest.raises(op.InputError, match="outside the canvas"):
+        _plan("wave", start=(-5.0, -5.0))

@@ -82,6 +82,7 @@ class OrderOptions:
         if self.metric not in METRICS:
             raise InputError(f"there is no metric {self.metric!r}; expected one of {', '.join(METRICS)}")
         _above_zero("order", seconds=self.seconds)
+        _whole("order", iterations=self.iterations, seed=self.seed, entries=self.entries)
         if self.iterations is not None and not 0 <= self.iterations < 2**62:
             raise InputError(f"order iterations is {self.iterations}; expected 0..2^62 - 1")
         if not 0 <= self.seed < 2**31:
@@ -133,7 +134,17 @@ class Options:
     time: TimeOptions = field(default_factory=TimeOptions)
 
 
+def _whole(group: str, **values: int | None) -> None:
+    for name, value in values.items():
+        if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+            raise InputError(f"{group} {name} is {value!r}; expected a whole number")
+
+
 def _above_zero(group: str, **values: float | None) -> None:
     for name, value in values.items():
-        if value is not None and not (math.isfinite(value) and value > 0):
+        if value is None:
+            continue
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise InputError(f"{group} {name} is {value!r}; expected a number of SI units")
+        if not (math.isfinite(value) and value > 0):
             raise InputError(f"{group} {name} is {value}; expected a finite number above 0")

@@ -23,6 +23,9 @@ def read(source: str | bytes | os.PathLike[str], *, close_gap: float | None = No
     """
     from optplan.jobs.svg import read_svg
 
+    if not isinstance(source, str | bytes | os.PathLike):
+        raise InputError(f"{source!r} is no job; expected the path of a file, or the text of an SVG")
+
     if isinstance(source, bytes) or (isinstance(source, str) and source.lstrip().startswith("<")):
         return read_svg(source, close_gap=close_gap)
     file = Path(source)

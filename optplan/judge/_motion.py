@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from optplan.domain.arrays import FloatArray
@@ -120,12 +122,22 @@ def _uneven(trajectory: Trajectory, profile: Speeds) -> _Fault:
     return float(excess[worst]), detail, float(profile.knots[worst])
 
 
+def _turn_time(angle: FloatArray, robot: Robot) -> FloatArray:
+    """Least time (k,) s for turning on the spot by angles (k,) rad from rest to rest, within rate and acceleration."""
+    rate, rise = robot.mobility.turn_rate, robot.mobility.turn_acceleration
+    if math.isinf(rate):
+        return np.zeros(len(angle))
+    full = angle / rate + rate / rise  # reaches the rate; a smaller turn only speeds up and slows down
+    least: FloatArray = np.where(angle * rise < rate**2, 2 * np.sqrt(angle / rise), np.where(angle > 0, full, 0.0))
+    return least
+
+
 def _short_stop(path: Path, trajectory: Trajectory, profile: Speeds, robot: Robot) -> _Fault:
     """Stops that end before the turn and the work are done."""
     stops = np.flatnonzero(path.is_stop)
     if len(stops) == 0 or len(trajectory.s) < 2:
         return _FINE
-    needed = np.abs(path.turn[stops]) / robot.mobility.turn_rate + path.dwell[stops]
+    needed = _turn_time(np.abs(path.turn[stops]), robot) + path.dwell[stops]
     places, group = np.unique(path.offsets[stops], return_inverse=True)
     due = np.bincount(group, weights=needed)
     step, gone = np.diff(trajectory.t), np.diff(profile.knots)

@@ -6,8 +6,9 @@ import math
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.ordering import OrderingProblem
-from optplan.domain.stop import StopReason
+from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering.arrays import dense_costs
+from optplan.ordering.bounds import lower_bound
 from optplan.ordering.local import local_search
 from optplan.ordering.method import Run
 
@@ -39,6 +40,8 @@ def mtz_by_highs(run: Run) -> StopReason:
     run.adopt(warm)
     if stopped in (StopReason.CANCELLED, StopReason.TARGET):
         return stopped
+    # cheap, and there is something to show when the model does not get far
+    run.prove(lower_bound(run.problem, StopRule(max(0.2 * run.clock.remaining, 0.1), cancelled=run.rule.cancelled)))
     return prove_by_highs(run)
 
 

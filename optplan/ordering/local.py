@@ -15,6 +15,9 @@ from optplan.ordering.method import Run
 ITERATIONS_EACH = 50
 """Perturbations for each cluster when nothing else ends the search, but at least 2000 and at most MOST."""
 MOST = 10_000
+MOST_SLICES = 300
+"""Slices of work after which the search ends when nothing else ends it: some 10 to 20 s. Counted in arc costs, not in
+seconds, so that the same seed gives the same path everywhere."""
 SLICE = {0: 500_000, 1: 500_000, 2: 15_000}
 """Arc costs between two looks at the stop rule, by kind of cost: at most some 0.05 s."""
 NN_SLICE = 2_000_000
@@ -22,7 +25,9 @@ NN_SLICE = 2_000_000
 NN_WORK = 20_000_000
 """Arc costs spent on trying several first clusters."""
 SWEEP_WORK = 40_000_000
-"""Most arc costs of one choice of all nodes; Dubins costs count 30-fold."""
+"""Most arc costs of one choice of all nodes."""
+EFFORT = {0: 1, 1: 1, 2: 30}
+"""How many times an arc cost counts, by kind: Dubins paths take longer than straight lines."""
 
 
 def nearest_neighbour(run: Run) -> StopReason:
@@ -36,8 +41,8 @@ def nearest_neighbour(run: Run) -> StopReason:
     first = problem.first_node
     waiting = np.diff(structure.before[: count + 1])
     may_end = np.logical_or.reduceat(np.isfinite(problem.end_costs), first[:-1]).astype(np.int64)
-    steps = max(1, NN_SLICE // problem.nodes)
-    for c in _first_clusters(problem, waiting):
+    steps = max(1, NN_SLICE // EFFORT[costs.kind] // problem.nodes)
+    for c in _first_clusters(problem, waiting, costs.kind):
         if (stop := run.stop()) and (len(run.nodes) or stop is StopReason.CANCELLED):
             return stop
         own = np.arange(first[c], first[c + 1])
@@ -62,14 +67,15 @@ def nearest_neighbour(run: Run) -> StopReason:
     return run.stop() or StopReason.FINISHED
 
 
-def _first_clusters(problem: OrderingProblem, waiting: IntArray) -> list[int]:
+def _first_clusters(problem: OrderingProblem, waiting: IntArray, kind: int) -> list[int]:
     """Clusters to begin with: those of least cost from the depot, as many as are cheap to try."""
     entry = np.minimum.reduceat(problem.start_costs + problem.node_costs, problem.first_node[:-1])
     ready = np.flatnonzero(waiting == 0)
     if np.isfinite(entry[ready]).any():
         ready = ready[np.isfinite(entry[ready])]
     ready = ready[entry[ready] <= entry[ready].min()]
-    tries = int(np.clip(2 * NN_WORK / (problem.nodes * problem.clusters), 1, len(ready)))
+    work = problem.nodes * problem.clusters * EFFORT[kind]
+    tries = int(np.clip(2 * NN_WORK / work, 1, len(ready)))
     return [int(c) for c in ready[np.linspace(0, len(ready) - 1, tries).astype(np.int64)]]
 
 
@@ -111,6 +117,7 @@ def local_search(run: Run) -> StopReason:
     )
     limit = run.rule.iterations
     endless = limit is None and math.isfinite(run.rule.seconds)
+    slices = MOST_SLICES if limit is None and not endless else 2**62
     if limit is None:
         limit = 2**62 if endless else min(max(2000, ITERATIONS_EACH * count), MOST)
     if count <= 2:
@@ -124,7 +131,8 @@ def local_search(run: Run) -> StopReason:
             known = float(min(work.cost[0], work.cost[1]))
             run.offer(found.nodes)
         stop = run.stop()
-        if work.counters[FINISHED]:
+        slices -= 1
+        if work.counters[FINISHED] or slices == 0:
             return stop or StopReason.FINISHED
         # no iteration counts before the first descent is done, not even when none is wanted
         if stop and stop is not StopReason.ITERATIONS:
@@ -144,5 +152,5 @@ def _ends(problem: OrderingProblem) -> int:
 def _sweep(problem: OrderingProblem, kind: int) -> int:
     """1 to choose all nodes anew after the first descent, -1 where that takes too long."""
     sizes = np.diff(problem.first_node)
-    effort = float((sizes[1:] * sizes[:-1]).sum()) * (30 if kind == 2 else 1)
+    effort = float((sizes[1:] * sizes[:-1]).sum()) * EFFORT[kind]
     return 1 if effort <= SWEEP_WORK else -1

@@ -28,6 +28,8 @@ def load_robot(name: str | Path | Robot) -> Robot:
     """
     if isinstance(name, Robot):
         return name
+    if not isinstance(name, str | Path):
+        raise InputError(f"{name!r} is no robot; expected the name of a preset, a file, or a robot")
     if str(name) in robot_names():
         return _read(_PRESETS / f"{name}.toml")
     file = Path(name)

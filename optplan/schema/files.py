@@ -10,7 +10,7 @@ from pathlib import Path
 
 from optplan.domain.errors import InputError, LimitError
 
-MAX_JSON_BYTES = 256 * 2**20
+MAX_JSON_BYTES = 100 * 2**20
 """Largest plan or job file that is read."""
 
 

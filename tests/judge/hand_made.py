@@ -15,7 +15,7 @@ from optplan.domain.ordering import Ordering, Status
 from optplan.domain.path import Path, Trajectory
 from optplan.domain.report import Report, Verdict
 from optplan.domain.result import Cover, Plan
-from optplan.domain.robot import Canvas, DiffDrive, Gantry, Robot, Tool, ToolSetting
+from optplan.domain.robot import Canvas, DiffDrive, Gantry, Mobility, Robot, Tool, ToolSetting
 from optplan.domain.stop import StopReason
 from optplan.domain.stroke import Stroke, Traversals
 
@@ -85,6 +85,16 @@ class Pen:
         )  # fmt: skip
 
 
+def turn_time(angle: float, mobility: Mobility) -> float:
+    """Seconds for a turn from rest to rest: a triangle or a trapezoid of angular speed."""
+    if angle == 0 or math.isinf(mobility.turn_rate):
+        return 0.0
+    ramp = mobility.turn_rate / mobility.turn_acceleration
+    if angle < mobility.turn_rate * ramp:
+        return 2 * math.sqrt(angle / mobility.turn_acceleration)
+    return angle / mobility.turn_rate + ramp
+
+
 def profile(path: Path, robot: Robot, factor: float = 1.0, push: float = 1.0) -> Trajectory:
     """Trapezoids from rest to rest on every piece; `factor` and `push` raise speed and acceleration."""
     s, t, v = [0.0], [0.0], [0.0]
@@ -92,7 +102,7 @@ def profile(path: Path, robot: Robot, factor: float = 1.0, push: float = 1.0) ->
     for row, length in enumerate(path.length.tolist()):
         if length == 0:
             s.append(s[-1])
-            t.append(t[-1] + abs(float(path.turn[row])) / mobility.turn_rate + float(path.dwell[row]))
+            t.append(t[-1] + turn_time(abs(float(path.turn[row])), mobility) + float(path.dwell[row]))
             v.append(0.0)
             continue
         top = factor * (mobility.work_speed if path.tool[row] else mobility.transit_speed)

@@ -80,7 +80,8 @@ def test_figures_of_two_squares() -> None:
     # three corners of each square and a turn to leave the first
     assert report.figure("turns") == 7
     assert report.figure("turned") == pytest.approx(7 * math.pi / 2)
-    assert report.figure("turn time") == pytest.approx(7 * math.pi / 2)
+    # 1 rad/s, reached and left with 16 rad/s^2
+    assert report.figure("turn time") == pytest.approx(7 * (math.pi / 2 + 1 / 16))
     parts = ("work time", "transit time", "turn time")
     assert sum(map(report.figure, parts)) == pytest.approx(report.figure("duration"))
     assert report.figure("bound") == pytest.approx(2.0)
