@@ -151,6 +151,8 @@ def test_show_and_export_write_beside_the_plan(run: Runner, two: str) -> None:
     assert run("show", "made/plan.json", "-o", "a.pdf").code == 0
     assert Path("a.pdf").read_bytes().startswith(b"%PDF")
     assert run("export", "made/plan.json", "--to", "csv", "--spacing", "1 m").out.strip() == "made/plan.csv"
+    assert json.loads(run("show", "made/plan.json", "-o", "b.png", "--json").out) == {"files": ["b.png"]}
+    assert json.loads(run("export", "made/plan.json", "-t", "txt", "--json").out) == {"files": ["made/plan.txt"]}
     assert run("export", "made/plan.json", "--to", "csv").code == 2
     assert run("export", "made/plan.json", "--to", "nonsense").code == 2
 

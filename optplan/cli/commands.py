@@ -392,13 +392,14 @@ def show(
     ] = None,
     dpi: Annotated[int, typer.Option(min=20, max=1200, help="Pixels per inch of a PNG.")] = 150,
     force: Force = False,
+    json: Json = False,
 ) -> None:
     """Picture of a plan."""
     import optplan as op
 
     target = out or file.with_suffix(".png")
     op.draw(op.load_plan(file), target, overwrite=force, dpi=dpi)
-    print(target)
+    _tell_file(target, json)
 
 
 @app.command("export")
@@ -408,6 +409,7 @@ def export_command(
     out: OutFile = None,
     spacing: Annotated[str | None, typer.Option(help="Greatest distance between points, e.g. 5cm.")] = None,
     force: Force = False,
+    json: Json = False,
 ) -> None:
     """Write a plan for another system."""
     import optplan as op
@@ -419,7 +421,14 @@ def export_command(
     target = out or file.with_suffix(FORMATS[to].suffix)
     distance = None if spacing is None else length(spacing)
     op.export_plan(op.load_plan(file), to, target, spacing=distance, overwrite=force)
-    print(target)
+    _tell_file(target, json)
+
+
+def _tell_file(file: Path, json: bool) -> None:
+    if json:
+        output.print_json({"files": [str(file)]})
+    else:
+        print(file)
 
 
 @app.command()

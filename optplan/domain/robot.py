@@ -152,8 +152,20 @@ class DiffDrive:
         return CurvatureLimits(max(curvature, 0.0), min(sharpness, self.sharpness))
 
 
+class _AnyCurve:
+    """What mobilities share that need no heading: they turn without moving, at no cost of time."""
+
+    turns_on_spot = True
+    turn_rate = math.inf
+    turn_acceleration = math.inf
+
+    def curvature_limits(self, speed: float) -> CurvatureLimits:
+        """None: it follows any curve (`speed` is not used)."""
+        return CurvatureLimits(math.inf, math.inf)
+
+
 @dataclass(frozen=True)
-class Gantry:
+class Gantry(_AnyCurve):
     """Moves along two axes at once and needs no heading: a pen plotter.
 
     Parameters
@@ -166,20 +178,12 @@ class Gantry:
     transit_speed: float
     acceleration: float
 
-    turns_on_spot = True
-    turn_rate = math.inf
-    turn_acceleration = math.inf
-
     def __post_init__(self) -> None:
         _positive(self, "work_speed", "transit_speed", "acceleration")
 
-    def curvature_limits(self, speed: float) -> CurvatureLimits:
-        """None: it follows any curve (`speed` is not used)."""
-        return CurvatureLimits(math.inf, math.inf)
-
 
 @dataclass(frozen=True)
-class Boom:
+class Boom(_AnyCurve):
     """A boom lift: it stops, works, and moves on.
 
     Parameters
@@ -194,10 +198,6 @@ class Boom:
     acceleration: float
     reach: float
     dwell: float
-
-    turns_on_spot = True
-    turn_rate = math.inf
-    turn_acceleration = math.inf
 
     def __post_init__(self) -> None:
         _positive(self, "acceleration", "reach")
@@ -216,13 +216,9 @@ class Boom:
         """The slowest axis of the wall's plane, m/s: reached in every direction."""
         return min(self.speeds[:2])
 
-    def curvature_limits(self, speed: float) -> CurvatureLimits:
-        """None: it follows any curve (`speed` is not used)."""
-        return CurvatureLimits(math.inf, math.inf)
-
 
 @dataclass(frozen=True)
-class Arm:
+class Arm(_AnyCurve):
     """An industrial arm.
 
     Parameters
@@ -237,16 +233,8 @@ class Arm:
     acceleration: float
     orientation_rate: float
 
-    turns_on_spot = True
-    turn_rate = math.inf
-    turn_acceleration = math.inf
-
     def __post_init__(self) -> None:
         _positive(self, "work_speed", "transit_speed", "acceleration", "orientation_rate")
-
-    def curvature_limits(self, speed: float) -> CurvatureLimits:
-        """None: it follows any curve (`speed` is not used)."""
-        return CurvatureLimits(math.inf, math.inf)
 
 
 Mobility = DiffDrive | Gantry | Boom | Arm

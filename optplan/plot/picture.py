@@ -48,9 +48,10 @@ def figure(plan: Plan) -> Figure:
     size = np.maximum(high - low, 1e-9)
     inches = 8 * size / size.max()
     inches = np.maximum(inches, 2.5)
-    made = Figure(figsize=(float(inches[0]) + 1.1, float(inches[1]) + 1.5), facecolor="white")
+    made = Figure(figsize=(max(float(inches[0]) + 1.1, 7.0), float(inches[1]) + 1.5), facecolor="white")
     width, height = made.get_size_inches()
-    axes = made.add_axes((0.75 / width, 0.55 / height, inches[0] / width, inches[1] / height))
+    left = max(0.75, (width - inches[0]) / 2)
+    axes = made.add_axes((left / width, 0.55 / height, inches[0] / width, inches[1] / height))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     small = size.max() < 1
     colours = _SAND if isinstance(plan.robot.mobility, DiffDrive) else _PAPER
