@@ -31,11 +31,11 @@ def _use_own_cache() -> None:
 
     if os.environ.get("NUMBA_CACHE_DIR"):
         return
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    folder = home / "optplan" / f"kernels-{cache_key()}"
     try:
+        home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        folder = home / "optplan" / f"kernels-{cache_key()}"
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
+    except (OSError, RuntimeError):  # a full or read-only disk, a user without a home
         return  # numba finds a place of its own
     if os.access(folder, os.W_OK):
         numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
