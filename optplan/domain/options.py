@@ -148,3 +148,5 @@ def _above_zero(group: str, **values: float | None) -> None:
             raise InputError(f"{group} {name} is {value!r}; expected a number of SI units")
         if not (math.isfinite(value) and value > 0):
             raise InputError(f"{group} {name} is {value}; expected a finite number above 0")
+        if value < 1 / MAX_NUMBER:  # its square would be lost
+            raise InputError(f"{group} {name} is {value}; expected at least {1 / MAX_NUMBER:g}")

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from optplan.domain.arrays import MAX_NUMBER
 from optplan.domain.errors import InputError
 
 
@@ -295,3 +296,5 @@ def _positive(owner: object, *names: str) -> None:
         value = getattr(owner, name)
         if not (math.isfinite(value) and value > 0):
             raise InputError(f"{name} is {value}; expected a finite number above 0")
+        if value < 1 / MAX_NUMBER:  # its square would be lost
+            raise InputError(f"{name} is {value}; expected at least {1 / MAX_NUMBER:g}")

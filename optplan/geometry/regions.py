@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 MAX_FACES = 20_000
 """Most faces that crossing rings may cut the plane into."""
+MAX_CROSSINGS = 10 * MAX_FACES
+"""Most pairs of edges that may cross: more make too many faces, unless many meet in one point. Found out before the
+rings are cut into pieces, whose time and memory grow with it."""
 
 
 def region(rings: Sequence[FloatArray], rule: FillRule) -> tuple[list[Polygon], bool]:
@@ -32,7 +35,7 @@ def region(rings: Sequence[FloatArray], rule: FillRule) -> tuple[list[Polygon], 
 
     Raises
     ------
-    LimitError : the rings cross so often that there are more than MAX_FACES faces
+    LimitError : the rings cross so often that there are more than MAX_FACES faces, or MAX_CROSSINGS crossings
     """
     import shapely
 
@@ -43,6 +46,7 @@ def region(rings: Sequence[FloatArray], rule: FillRule) -> tuple[list[Polygon], 
         polygon = shapely.Polygon(rings[0])
         if polygon.is_valid:
             return ([polygon] if polygon.area > 0 else []), False
+    _few_crossings(rings)
     lines = shapely.union_all([shapely.LinearRing(ring) for ring in rings])
     faces = shapely.get_parts(shapely.polygonize([lines]))
     if len(faces) > MAX_FACES:
@@ -58,6 +62,22 @@ def region(rings: Sequence[FloatArray], rule: FillRule) -> tuple[list[Polygon], 
     parts = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon" and part.area > 0]
     crossed = any(not shapely.LinearRing(ring).is_simple for ring in rings) or _rings_cross(rings)
     return sorted(parts, key=lambda part: -part.area), crossed
+
+
+def _few_crossings(rings: Sequence[FloatArray]) -> None:
+    """Raises LimitError when more than MAX_CROSSINGS pairs of edges cross."""
+    import shapely
+
+    ends = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings])
+    if len(ends) ** 2 <= 2 * MAX_CROSSINGS:
+        return
+    edges = shapely.linestrings(ends)
+    tree = shapely.STRtree(edges)
+    pairs = 0  # each is met twice
+    for begin in range(0, len(edges), 256):
+        pairs += tree.query(edges[begin : begin + 256], predicate="crosses").shape[1]
+        if pairs > 2 * MAX_CROSSINGS:
+            raise LimitError(f"the edges of a fill cross more than {MAX_CROSSINGS} times, which is the limit")
 
 
 def _rings_cross(rings: Sequence[FloatArray]) -> bool:

@@ -152,3 +152,9 @@ def test_shrunk_copies_nest(ring: FloatArray, first: float, second: float) -> No
     assert containment(nest, [True] * 3) == [2, -1, 1]
     shifted = [nest[0] + 100, nest[1], nest[2]]
     assert containment(shifted, [True] * 3) == [-1, -1, 1]
+
+
+def test_a_polygon_that_crosses_itself_millions_of_times_is_refused_before_it_is_cut() -> None:
+    ring = np.random.default_rng(0).uniform(0, 100, (5000, 2))
+    with pytest.raises(LimitError, match="cross more than 200000 times"):
+        region([ring], FillRule.NONZERO)

@@ -11,6 +11,7 @@ import pytest
 
 from optplan import robots
 from optplan.domain.errors import InputError
+from optplan.domain.options import TimeOptions
 from optplan.domain.robot import DiffDrive, Robot
 from optplan.robots import load_robot, robot_names
 
@@ -136,3 +137,10 @@ def test_what_is_no_robot(tmp_path: Path) -> None:
 
 def test_loaded_robots_are_robots() -> None:
     assert all(isinstance(load_robot(name), Robot) for name in NAMES)
+
+
+def test_a_speed_whose_square_is_lost_is_refused() -> None:
+    with pytest.raises(InputError, match=r"work_speed is 1e-308; expected at least 1e-30"):
+        DiffDrive(0.5, 0.1, 20, 40, 1e-308, 1)
+    with pytest.raises(InputError, match=r"transit_speed is 1e-308; expected at least 1e-30"):
+        TimeOptions(transit_speed=1e-308)
