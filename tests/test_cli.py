@@ -226,6 +226,7 @@ HOSTILE = {
     "format": (["plan", "two.svg", "--export", "stone"], "stone"),
     "config": (["plan", "two.svg", "-c", "bad.toml"], "bad.toml"),
     "config key": (["plan", "two.svg", "-c", "key.toml"], "colour"),
+    "config table": (["plan", "two.svg", "-c", "table.toml"], "page: is no table"),
     "no plan": (["check", "two.svg"], "two.svg"),
     "half a plan": (["check", "half.json"], "half.json"),
     "unknown demo": (["demo", "unicorn"], "unicorn"),
@@ -242,6 +243,7 @@ def test_bad_input_gives_one_clear_error_and_exit_code_2(run: Runner, two: str, 
     Path("empty.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"/>')
     Path("picture.bmp").write_text("BM")
     Path("bad.toml").write_text("= 3")
+    Path("table.toml").write_text("page = 3")
     Path("key.toml").write_text("[cover]\ncolour = 3\n")
     Path("half.json").write_text('{"version": "1.0", "job": ')
     assert run("cover", two, "-o", "covered.json").code == 0

@@ -135,3 +135,11 @@ def test_curves_that_stop_the_robot_are_told() -> None:
 def test_a_start_outside_the_canvas_is_refused() -> None:
     with pytest.raises(op.InputError, match="outside the canvas"):
         _plan("wave", start=(-5.0, -5.0))
+
+
+def test_little_room_for_turning_loops_is_told() -> None:
+    robot = op.load_robot("line-marker")
+    job = op.read(op.instance("wave"))
+    tight = op.cover(job, robot, op.Options(page=op.PageOptions(margin=0.5)))
+    assert any("loops of 0.59 m" in note.text for note in tight.notes)
+    assert not any("loops" in note.text for note in op.cover(job, robot).notes)

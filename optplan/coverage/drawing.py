@@ -18,7 +18,7 @@ from optplan.domain.options import CoverOptions, Options, PageOptions
 from optplan.domain.path import RAISED
 from optplan.domain.progress import Progress, ProgressCallback
 from optplan.domain.result import Area, Cover
-from optplan.domain.robot import Robot, Tool
+from optplan.domain.robot import Canvas, Robot, Tool
 from optplan.domain.stroke import Stroke
 from optplan.geometry.regions import region
 from optplan.jobs.syntax import Mark, interpret
@@ -50,7 +50,7 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
         reason = "every element is white, without style, or a start point"
         raise InputError(f"nothing in this drawing is to be drawn: {reason}", job.name)
     canvas = canvas_of(options.page, robot)
-    notes = [*read.notes, *_offset_note(robot)]
+    notes = [*read.notes, *_offset_note(robot), *_loop_note(robot, canvas, options)]
     if canvas is None:
         notes.append(Note("notice", robot.name, "has no canvas: the drawing keeps the size it has on paper"))
     with located(job.name):
@@ -82,6 +82,19 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
     start = None if read.start is None else where.apply(read.start[None, :])[0]
     begin = None if start is None else (float(start[0]), float(start[1]))
     return Cover(tuple(strokes), tuple(areas), chain, begin, canvas, tuple(notes))
+
+
+def _loop_note(robot: Robot, canvas: Canvas | None, options: Options) -> list[Note]:
+    """A notice when a robot that cannot turn on the spot has little room for its turning loops."""
+    if canvas is None or not robot.heading_counts:
+        return []
+    curvature = robot.mobility.curvature_limits(options.time.transit_speed or robot.mobility.transit_speed).curvature
+    if curvature <= 0 or canvas.margin >= 3 / curvature:
+        return []
+    text = (
+        f"turns in loops of {1 / curvature:.2g} m radius, which may leave a canvas with a margin of {canvas.margin:g} m"
+    )
+    return [Note("notice", robot.name, text)]
 
 
 def _offset_note(robot: Robot) -> list[Note]:

@@ -80,6 +80,8 @@ def fault(error: ValidationError, where: str) -> InputError:
         message = item["msg"].removeprefix("Value error, ")
         if item["type"] == "extra_forbidden":
             message = "is not known"
+        elif item["type"] in ("model_type", "dict_type"):
+            message = "is no table of named values"
         lines.append(f"{place}: {message}{given}" if place else f"{message}{given}")
     more = error.error_count() - len(lines)
     if more > 0:
