@@ -63,14 +63,16 @@ def main() -> int:
     helps = [run([*_OPTPLAN, "--help"]).seconds for _ in range(5)]
     record("optplan --help", statistics.median(helps), 0.5, "s")
     lion = instance("drawings/lion")
-    with tempfile.TemporaryDirectory() as cache:
-        record("plan a dozen strokes, first run on a new machine", plan(lion, NUMBA_CACHE_DIR=cache).seconds, 30, "s")
-        again = [plan(lion, NUMBA_CACHE_DIR=cache).seconds for _ in range(3)]
-        record("plan a dozen strokes, second run", statistics.median(again), 5, "s")
     with tempfile.TemporaryDirectory() as folder:
         large = Path(folder) / "large.svg"
         large.write_text(random_drawing(1000))
-        used = plan(large)
+        cache = f"{folder}/cache"
+        record("plan a dozen strokes, first run on a new machine", plan(lion, NUMBA_CACHE_DIR=cache).seconds, 30, "s")
+        again = [plan(lion, NUMBA_CACHE_DIR=cache).seconds for _ in range(3)]
+        record("plan a dozen strokes, second run", statistics.median(again), 5, "s")
+        # 30 s for the plan, and the 30 s that compiling may take once
+        record("plan 1000 strokes, compiling included", plan(large, NUMBA_CACHE_DIR=cache).seconds, 60, "s")
+        used = plan(large, NUMBA_CACHE_DIR=cache)
     record("plan 1000 strokes", used.seconds, 30, "s")
     record("plan 1000 strokes, peak memory", used.megabytes, 1000, "MB")
     return 0 if all(value <= target for _, value, target, _ in rows) else 1

@@ -186,7 +186,10 @@ def _driven_marks(shapely: Any, path: Path, samples: Samples, robot: Robot, limi
             )
         )
         rows = moving[np.concatenate([[True], broken])]
-    stops = np.flatnonzero(down & path.is_stop & ((path.dwell > 0) | (path.turn != 0)))
+    # a turn at the end or in the middle of a mark of its own setting lies within that mark's round ends and joints
+    draws = np.concatenate([[-1], np.where(down & ~path.is_stop, tool, -1), [-1]])
+    within = (draws[:-2] == tool) | (draws[2:] == tool)
+    stops = np.flatnonzero(down & path.is_stop & ((path.dwell > 0) | ((path.turn != 0) & ~within)))
     rows = np.concatenate([rows, stops])
     return Marks(
         _buffers(shapely, lines + list(shapely.points(path.start[stops, :2])), widths[tool[rows]]), path.stroke[rows]

@@ -14,7 +14,7 @@ from optplan.ordering.method import Run
 
 ITERATIONS_EACH = 50
 """Perturbations for each cluster when nothing else ends the search, but at least 2000 and at most MOST."""
-MOST = 8_000
+MOST = 6_000
 MOST_SLICES = 300
 """Slices of work after which the search ends when nothing else ends it: some 10 to 20 s. Counted in arc costs, not in
 seconds, so that the same seed gives the same path everywhere."""
@@ -83,7 +83,7 @@ def local_search(run: Run) -> StopReason:
     """Descent by 2-opt, or-opt and node choice, then perturbation; see the kernel `search` for what an iteration is.
 
     Starts from the given solution, else from nearest neighbours. Without limits of its own it ends after 50
-    iterations for each cluster, at least 2000 and at most 8000.
+    iterations for each cluster, at least 2000 and at most 6000.
     """
     from optplan.ordering._kernels.path import FINISHED, ITERATIONS, SWEEP, Path, Work, refresh
     from optplan.ordering._kernels.search import search
