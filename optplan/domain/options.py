@@ -67,7 +67,8 @@ class OrderOptions:
     seconds, iterations : stop rule; None sets no limit beyond the solver's own
     seed : of everything random
     start : (x, y) m where the robot stands, or None for the drawing's own start point, or a free choice
-    entries : greatest number of vertices at which a closed stroke may be entered; None: every vertex
+    entries : greatest number of vertices at which a closed stroke may be entered; None: every vertex, or 16 where
+        headings count
     """
 
     solver: str = "auto"

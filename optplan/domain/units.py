@@ -26,7 +26,6 @@ SPEED = {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "km/h": 1 / 3.6, "ft/s": 0.3048
 ACCELERATION = {"m/s^2": 1.0, "m/s2": 1.0, "mm/s^2": 1e-3, "mm/s2": 1e-3}
 RATE = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": 2 * math.pi / 60}
 RATE_CHANGE = {"rad/s^2": 1.0, "rad/s2": 1.0, "deg/s^2": math.pi / 180}
-CURVATURE = {"1/m": 1.0, "1/mm": 1e3}
 SHARPNESS = {"1/m^2": 1.0, "1/m2": 1.0}
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)?\s*")

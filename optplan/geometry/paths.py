@@ -86,14 +86,3 @@ def sampled(path: Path, spacing: float) -> States:
     states = along(path, piece, path.length[piece] * within / parts[piece])
     last = ends(path)
     return States(*(np.concatenate([column, final[-1:]]) for column, final in zip(states, last, strict=True)))
-
-
-def resampled(path: Path, s: FloatArray) -> States:
-    """States at arc lengths s (k,) m from the beginning, clipped to the path, which has a piece or more."""
-    offsets = path.offsets
-    s = np.clip(s, 0.0, offsets[-1])
-    moving = np.flatnonzero(path.length > 0)
-    if len(moving) == 0:
-        return along(path, np.zeros(len(s), dtype=np.int64), np.zeros(len(s)))
-    piece = moving[np.clip(np.searchsorted(offsets[moving], s, side="right") - 1, 0, len(moving) - 1)]
-    return along(path, piece, np.minimum(s - offsets[piece], path.length[piece]))

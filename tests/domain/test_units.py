@@ -33,7 +33,6 @@ from optplan.domain.errors import InputError
         ("36 km/h", units.SPEED, "m/s", 10.0),
         ("600 mm/min", units.SPEED, "m/s", 0.01),
         ("60 rpm", units.RATE, "rad/s", 2 * math.pi),
-        ("2 1/mm", units.CURVATURE, "1/m", 2000.0),
     ],
 )
 def test_known_quantities(text: str | float, table: dict[str, float], default: str, expected: float) -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.path import Path
-from optplan.geometry.paths import along, displacement, ends, resampled, sampled
+from optplan.geometry.paths import along, displacement, ends, sampled
 from tests.strategies import array
 
 
@@ -80,15 +80,6 @@ def test_samples_are_even(spacing: float) -> None:
     assert states.curvature == pytest.approx(
         MIXED.curvature[states.piece] + MIXED.sharpness[states.piece] * states.distance
     )
-
-
-def test_resampling_hits_the_samples() -> None:
-    states = sampled(MIXED, 0.1)
-    again = resampled(MIXED, MIXED.offsets[states.piece] + states.distance)
-    assert again.position == pytest.approx(states.position, abs=1e-9)
-    beyond = resampled(MIXED, array([-1.0, 1e9]))
-    assert beyond.position[0] == pytest.approx(MIXED.start[0])
-    assert beyond.position[1] == pytest.approx(ends(MIXED).position[-1])
 
 
 def test_nothing_driven_gives_no_samples() -> None:

@@ -17,11 +17,18 @@ from optplan.domain.path import Path, Trajectory
 from optplan.domain.result import Cover
 from optplan.domain.robot import DiffDrive, Gantry, Robot
 from optplan.domain.stroke import Stroke
-from optplan.geometry.paths import resampled
+from optplan.geometry.paths import States, along
 from optplan.problem import traversals
 from optplan.timing.sampling import moments
 from optplan.timing.trapezoid import CONTROL_PERIOD, profile, turn_time
 from tests.strategies import PLOTTER, RAKE, TOOL, WHEELS, array, circle, polylines
+
+
+def at(path: Path, s: FloatArray) -> States:
+    """States at arc lengths s (k,) m inside pieces of a path that moves."""
+    moving = np.flatnonzero(path.length > 0)
+    piece = moving[np.clip(np.searchsorted(path.offsets[moving], s, side="right") - 1, 0, len(moving) - 1)]
+    return along(path, piece, np.minimum(s - path.offsets[piece], path.length[piece]))
 
 
 def _line(length: float, tool: int = 1) -> Path:
@@ -106,7 +113,7 @@ def test_limits_hold_everywhere(points: FloatArray, robot: Robot) -> None:
     times, s = _dense(made)
     step = times[1] - times[0]
     speed = np.diff(s) / step
-    states = resampled(path, (s[1:] + s[:-1]) / 2)
+    states = at(path, (s[1:] + s[:-1]) / 2)
     limit = np.where(path.tool[states.piece] > 0, robot.mobility.work_speed, robot.mobility.transit_speed)
     # a difference quotient looks half a step to both sides
     most = np.maximum(limit, np.maximum(np.roll(limit, 1), np.roll(limit, -1)))
@@ -128,7 +135,7 @@ def test_wheels_keep_their_limits_in_arcs(points: FloatArray) -> None:
     made = profile(path, robot)
     middle = (made.s[1:] + made.s[:-1]) / 2
     moving = np.diff(made.s) > 1e-9
-    bend = np.abs(resampled(path, middle).curvature[moving])
+    bend = np.abs(at(path, middle).curvature[moving])
     outer = 1 + bend * tight.track / 2
     top = np.maximum(made.v[1:], made.v[:-1])[moving]
     rate = np.abs(np.diff(made.v)[moving] / np.diff(made.t)[moving])
