@@ -20,8 +20,10 @@ from optplan.cli.settings import (
     ElementFill,
     Entries,
     EntryVertex,
+    InnerFirst,
     Inset,
     Iterations,
+    Links,
     Margin,
     Metric,
     RobotName,
@@ -109,6 +111,8 @@ def plan_command(
     boundary: Boundary = None,
     fill: ElementFill = None,
     entry: EntryVertex = None,
+    inner_first: InnerFirst = None,
+    link: Links = None,
     solver: SolverName = None,
     metric: Metric = None,
     time_limit: TimeLimit = None,
@@ -312,6 +316,8 @@ def cover(
     boundary: Boundary = None,
     fill: ElementFill = None,
     entry: EntryVertex = None,
+    inner_first: InnerFirst = None,
+    link: Links = None,
 ) -> None:
     """Cover: from the job to strokes."""
     _stage("cover", file, out, dict(locals()), rest, force, quiet, json)
