@@ -325,7 +325,10 @@ def cover(
 
 @app.command()
 def order(
-    file: PlanFile,
+    file: Annotated[
+        Path,
+        typer.Argument(help="A plan, or an ordering instance (.tsp .atsp .sop .gtsp .pcglns).", show_default=False),
+    ],
     out: OutFile = None,
     rest: Rest = False,
     force: Force = False,
@@ -340,7 +343,34 @@ def order(
     entries: Entries = None,
 ) -> None:
     """Order: which stroke after which, entered where."""
-    _stage("order", file, out, dict(locals()), rest, force, quiet, json)
+    from optplan.cli.ordering import is_instance, order_instance
+
+    if is_instance(file):
+        order_instance(file, out, settings_of({}, dict(locals())), force, quiet, json)
+    else:
+        _stage("order", file, out, dict(locals()), rest, force, quiet, json)
+
+
+@app.command("compare")
+def compare_command(
+    instances: Annotated[
+        list[str], typer.Argument(help="Drawings, plans, library files, or names of shipped ones.", show_default=False)
+    ],
+    solver: Annotated[list[str] | None, typer.Option("--solver", "-s", help="Repeatable; default: auto.")] = None,
+    seed: Annotated[list[int] | None, typer.Option(help="Repeatable; default: 0.")] = None,
+    budget: Annotated[
+        list[str] | None, typer.Option("--budget", "-b", help="Seconds a run, e.g. 1s. Repeatable; default: 10s.")
+    ] = None,
+    robot: RobotName = None,
+    out: Annotated[Path | None, typer.Option("--output", "-o", help="CSV of all runs.", show_default=False)] = None,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+) -> None:
+    """Compare solvers: instances x solvers x seeds x budgets, as a table and CSV."""
+    from optplan.cli.ordering import compare_and_print
+
+    compare_and_print(instances, solver, seed, budget, robot or USUAL_ROBOT, out, force, quiet, json)
 
 
 @app.command()
