@@ -11,8 +11,9 @@ from optplan.ordering.arrays import refuse_unknown_costs
 from optplan.ordering.auto import choose_and_solve
 from optplan.ordering.bounds import lower_bound
 from optplan.ordering.exact import mtz_by_highs, refuse_many_arcs
-from optplan.ordering.local import local_search, nearest_neighbour
+from optplan.ordering.local import nearest_neighbour
 from optplan.ordering.method import Method
+from optplan.ordering.search import search
 from optplan.ordering.subsets import refuse_many_subsets, subset_programme
 
 __all__ = ["SOLVERS", "lower_bound", "solve"]
@@ -20,7 +21,7 @@ __all__ = ["SOLVERS", "lower_bound", "solve"]
 _METHODS = (
     Method("auto", "proof where proof is cheap, else search and a bound", choose_and_solve, refuse_unknown_costs),
     Method("nn", "nearest feasible neighbour, from several first strokes", nearest_neighbour, refuse_unknown_costs),
-    Method("2opt", "2-opt, or-opt and node choice, then perturbations: any-time", local_search, refuse_unknown_costs),
+    Method("search", "exchanges, ruin and recreate, annealed: any-time", search, refuse_unknown_costs, closed=True),
     Method("brute", "dynamic programming over subsets: proves small problems", subset_programme, refuse_many_subsets),
     Method("exact", "mixed-integer model (MTZ) by HiGHS: proves, or gives a bound", mtz_by_highs, refuse_many_arcs),
 )

@@ -16,7 +16,7 @@ from tests.ordering_cases import Case, cases, optimum, optimum_by_product, rando
 
 CASES = list(cases())
 PROVES = {"exact", "brute", "auto"}
-SEARCHES = {"nn", "2opt"}
+SEARCHES = {"nn", "search"}
 EVERY = pytest.mark.parametrize("solver", list(SOLVERS))
 TOLERANCE = 1e-7
 
@@ -71,7 +71,7 @@ def test_the_model_brackets_the_optimum(case: Case) -> None:
 
 def test_local_search_finds_most_optima() -> None:
     reached = [
-        solve(case.problem, "2opt", StopRule(iterations=300)).cost <= case.optimum + TOLERANCE
+        solve(case.problem, "search", StopRule(iterations=300)).cost <= case.optimum + TOLERANCE
         for case in CASES
         if math.isfinite(case.optimum)
     ]
@@ -137,7 +137,7 @@ def test_cancel_ends_with_what_is_known(solver: str) -> None:
 
     given = solve(problem, "nn").nodes
     answer = solve(
-        problem, solver, StopRule(cancelled=cancelled, iterations=10**9 if solver == "2opt" else None), 0, given
+        problem, solver, StopRule(cancelled=cancelled, iterations=10**9 if solver == "search" else None), 0, given
     )
     judge(problem, answer, optimum_of_strokes())
     assert answer.stopped is StopReason.CANCELLED or answer.status is Status.OPTIMAL
@@ -154,7 +154,7 @@ def optimum_of_strokes() -> float:
 @EVERY
 def test_target_ends_the_search(solver: str) -> None:
     problem = strokes(9)
-    answer = solve(problem, solver, StopRule(target=1e6, iterations=10**9 if solver == "2opt" else None))
+    answer = solve(problem, solver, StopRule(target=1e6, iterations=10**9 if solver == "search" else None))
     assert len(answer.nodes) == 9
     assert answer.stopped is StopReason.TARGET or answer.status is Status.OPTIMAL
 
@@ -181,18 +181,18 @@ def test_progress_improves(solver: str) -> None:
 
 def test_iterations_are_counted() -> None:
     for limit in (0, 1, 17):
-        assert solve(strokes(30), "2opt", StopRule(iterations=limit)).iterations == limit
-    assert solve(strokes(30), "2opt", StopRule(iterations=0)).cost <= solve(strokes(30), "nn").cost
+        assert solve(strokes(30), "search", StopRule(iterations=limit)).iterations == limit
+    assert solve(strokes(30), "search", StopRule(iterations=0)).cost <= solve(strokes(30), "nn").cost
 
 
 def test_time_limit() -> None:
-    answer = solve(strokes(60), "2opt", StopRule(seconds=0.3))
+    answer = solve(strokes(60), "search", StopRule(seconds=0.3))
     assert answer.stopped is StopReason.TIME
     assert answer.seconds < 20
     automatic = solve(strokes(60), "auto", StopRule(seconds=1.0))
     assert automatic.status is Status.FEASIBLE
     assert 0 < automatic.bound < automatic.cost
-    assert "2opt" in automatic.message
+    assert "search" in automatic.message
 
 
 def test_refusals_say_why() -> None:
@@ -202,11 +202,11 @@ def test_refusals_say_why() -> None:
         assert reason
         with pytest.raises(SolverError, match="at most"):
             solve(large, name)
-    assert all(SOLVERS[name].refusal(large) is None for name in ("auto", "nn", "2opt"))
+    assert all(SOLVERS[name].refusal(large) is None for name in ("auto", "nn", "search"))
 
 
 def test_unknown_name_lists_the_known() -> None:
-    with pytest.raises(InputError, match="2opt") as caught:
+    with pytest.raises(InputError, match="search") as caught:
         solve(strokes(3), "best")
     assert all(name in str(caught.value) for name in SOLVERS)
 
@@ -216,7 +216,7 @@ def test_precedence_survives_a_long_search() -> None:
     pairs = [(int(a), int(b)) for a in range(60) for b in range(a + 1, 60) if rng.random() < 0.05]
     problem = strokes(60)
     problem = OrderingProblem(problem.cluster, problem.costs, precedence=np.array(pairs))
-    answer = solve(problem, "2opt", StopRule(iterations=2000))
+    answer = solve(problem, "search", StopRule(iterations=2000))
     assert problem.faults(answer.nodes) == []
     assert answer.cost < 0.9 * solve(problem, "nn").cost
 
