@@ -117,12 +117,12 @@ def choose_all(graph: Graph, state: State) -> bool:
     rows, first = state.rows, graph.first
     c = graph.flags[SMALLEST]
     low, high = rows[c, NEXT], rows[c, PREVIOUS]
-    least, node = state.cost[NOW] - state.cost[GAIN], -1
+    least, node = state.cost[NOW] - state.cost[GAIN], first[c + 1]
     for k in range(first[c], first[c + 1]):
         best, _ = _layers(graph, state, low, high, k, k)
         if best < least:
             least, node = best, k
-    if node < 0:
+    if node == first[c + 1]:
         return False
     _, chosen = _layers(graph, state, low, high, node, node)
     _settle(state, low, high, chosen)

@@ -142,7 +142,8 @@ def _turn(graph: Graph, state: State, first: int, last: int, best: float) -> flo
 def _reversal(graph: Graph, state: State, a: int, best: float) -> bool:
     """Make the best reversal that gains more than `best` and makes cluster a and one near it neighbours."""
     rows, near = state.rows, graph.near
-    first, last = -1, -1
+    # no -1 where there is none: numba would compile what is called with it twice
+    first = last = a
     for k in range(near.shape[2]):
         b = near[0, a, k]
         if b < 0:
@@ -159,7 +160,7 @@ def _reversal(graph: Graph, state: State, a: int, best: float) -> bool:
             gain = _turn(graph, state, u, v, best)
             if gain > best and _may_reverse(graph, state, u, v):
                 best, first, last = gain, u, v
-    if first < 0:
+    if first == last:
         return False
     state.cost[NOW] -= best
     _reverse(graph, state, first, last)
@@ -241,7 +242,7 @@ def improve(graph: Graph, state: State, c: int) -> bool:
     node = rows[c, NODE]
     out = arc(distant, radius, data, node, rows[ahead, NODE])
     into = arc(distant, radius, data, rows[behind, NODE], node)
-    move = (-1, -1, -1)
+    tail = head = third = c
     for k in range(near.shape[2]):
         t = near[0, c, k]
         if t < 0:
@@ -249,9 +250,9 @@ def improve(graph: Graph, state: State, c: int) -> bool:
         if t != ahead:
             partial = out - arc(distant, radius, data, node, rows[t, NODE])
             if partial > 0.0:
-                best, third = _third(graph, state, c, t, partial, best)
-                if third >= 0:
-                    move = (c, t, third)
+                best, found = _third(graph, state, c, t, partial, best)
+                if found >= 0:
+                    tail, head, third = c, t, found
     for k in range(near.shape[2]):
         q = near[1, c, k]
         if q < 0:
@@ -260,14 +261,14 @@ def improve(graph: Graph, state: State, c: int) -> bool:
             saved = arc(distant, radius, data, rows[q, NODE], node)
             if into - saved > 0.0:
                 partial = arc(distant, radius, data, rows[q, NODE], rows[rows[q, NEXT], NODE]) - saved
-                best, third = _third(graph, state, q, c, partial, best)
-                if third >= 0:
-                    move = (q, c, third)
+                best, found = _third(graph, state, q, c, partial, best)
+                if found >= 0:
+                    tail, head, third = q, c, found
     if graph.flags[MIRROR] and _reversal(graph, state, c, best):
         return True
-    if move[0] < 0:
+    if tail == head:
         return False
-    x1, x2, y1, y2 = _pieces(state, move[0], move[1], move[2])
+    x1, x2, y1, y2 = _pieces(state, tail, head, third)
     state.cost[NOW] -= best
     _swap(graph, state, x1, x2, y1, y2)
     return True

@@ -118,7 +118,8 @@ def total(graph: Graph, rows: IntArray) -> float:
     return cost
 
 
-@njit(cache=True, nogil=True)
+# a signature of its own: numba would compile one for each number written out
+@njit("int64(uint64[::1], int64)", cache=True, nogil=True)
 def draw(random: npt.NDArray[np.uint64], bound: int) -> int:
     """A number in 0..bound-1 (splitmix64)."""
     random[0] += np.uint64(0x9E3779B97F4A7C15)
