@@ -20,7 +20,7 @@ from optplan.ordering.opened import rotatable
 if TYPE_CHECKING:
     from optplan.ordering._kernels.tour import Graph, State
 
-HOT = 6.0
+HOT = 2.0
 COLD = 0.1
 """Temperature in the beginning and at the end of a run, in mean arcs of the best path."""
 LEAST, EACH = 5_000, 200
