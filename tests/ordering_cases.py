@@ -38,15 +38,32 @@ def optimum(problem: OrderingProblem) -> float:
     start, end, own = problem.start_costs.tolist(), problem.end_costs.tolist(), problem.node_costs.tolist()
     members = [np.flatnonzero(problem.cluster == c).tolist() for c in range(problem.clusters)]
     before = problem.precedence.tolist()
+    tied: dict[frozenset[int], set[tuple[int, int]]] = {}
+    for _, tail, head in problem.enforced.tolist():
+        pair = frozenset((int(problem.cluster[tail]), int(problem.cluster[head])))
+        tied.setdefault(pair, set()).add((tail, head))
     best = math.inf
     for order in itertools.permutations(range(problem.clusters)):
-        if any(order.index(a) > order.index(b) for a, b in before):
+        place = {c: k for k, c in enumerate(order)}
+        if any(place[a] > place[b] for a, b in before):
             continue
-        # the cheapest way of reaching each node of the last cluster so far: plain, but enough to see every choice
-        reach = {i: start[i] + own[i] for i in members[order[0]]}
-        for c in order[1:]:
-            reach = {j: min(cost + matrix[i][j] for i, cost in reach.items()) + own[j] for j in members[c]}
-        best = min(best, min(cost + end[i] for i, cost in reach.items()))
+        if any(abs(place[a] - place[b]) != 1 for a, b in map(tuple, tied)):
+            continue
+        for group in [[i] for i in members[order[0]]] if problem.closed else [members[order[0]]]:
+            # the cheapest way of reaching each node of the last cluster so far: plain, but it sees every choice
+            reach = {i: start[i] + own[i] for i in group}
+            for a, b in itertools.pairwise(order):
+                arcs = tied.get(frozenset((a, b)))
+                reach = {
+                    j: own[j]
+                    + min(
+                        (cost + matrix[i][j] for i, cost in reach.items() if arcs is None or (i, j) in arcs),
+                        default=math.inf,
+                    )
+                    for j in members[b]
+                }
+            back = problem.closed and len(order) > 1
+            best = min(best, min(cost + end[i] + (matrix[i][group[0]] if back else 0.0) for i, cost in reach.items()))
     return best
 
 
@@ -87,8 +104,18 @@ def _costs(kind: str, rng: np.random.Generator, nodes: int) -> Any:
 KINDS = ("matrix", "holes", "negative", "ties", "euclid", "euclid3d", "duplicates", "dubins")
 
 
-def random_problem(kind: str, count: int, seed: int, *, precedence: bool, start: bool, end: bool) -> OrderingProblem:
-    """A problem of that kind; with precedence, with a fixed first and last cluster, as asked."""
+def random_problem(
+    kind: str,
+    count: int,
+    seed: int,
+    *,
+    precedence: bool,
+    start: bool,
+    end: bool,
+    tied: bool = False,
+    closed: bool = False,
+) -> OrderingProblem:
+    """A problem of that kind; with precedence, a fixed first and last cluster, enforced connections, as asked."""
     rng = np.random.default_rng(seed)
     cluster = _clusters(rng, count, 4 if count <= 5 else 2)
     nodes = len(cluster)
@@ -99,24 +126,42 @@ def random_problem(kind: str, count: int, seed: int, *, precedence: bool, start:
         starts[cluster != names[0]] = math.inf
     if end:
         ends[cluster != names[-1]] = math.inf
+    costs = _costs(kind, rng, nodes)
     return OrderingProblem(
         cluster,
-        _costs(kind, rng, nodes),
-        starts if start or seed % 2 else np.zeros(0),
-        ends if end or seed % 3 else np.zeros(0),
+        costs,
+        starts if start or (seed % 2 and not closed) else np.zeros(0),
+        ends if end or (seed % 3 and not closed) else np.zeros(0),
         np.where(rng.random(nodes) < 0.5, 0.0, rng.uniform(0, 2, nodes)),
         np.array([(names[a], names[b]) for a, b in pairs], dtype=np.int64).reshape(-1, 2),
+        _ties(costs, cluster, names, rng) if tied else np.zeros((0, 3), dtype=np.int64),
+        closed,
     )
+
+
+def _ties(costs: Any, cluster: Any, names: Any, rng: np.random.Generator) -> Any:
+    """Enforced connections along `names`, an order that precedence allows: single ones and chains."""
+    chosen = [int(rng.choice(np.flatnonzero(cluster == c))) for c in range(len(names))]
+    rows: list[tuple[int, int, int]] = []
+    for a, b in itertools.pairwise(names.tolist()):
+        if rng.random() < 0.5 and math.isfinite(costs.pairs(np.array([chosen[a]]), np.array([chosen[b]]))[0]):
+            link = 1 + max((row[0] for row in rows), default=-1)
+            tails, heads = np.flatnonzero(cluster == a), np.flatnonzero(cluster == b)
+            rows += [(link, chosen[a], chosen[b]), (link, chosen[b], chosen[a])]
+            rows += [(link, int(rng.choice(tails)), int(rng.choice(heads)))]
+    return np.array(rows, dtype=np.int64).reshape(-1, 3)
 
 
 def cases() -> Iterator[Case]:
     """All kinds, sizes and combinations of conditions."""
-    combinations = itertools.product(KINDS, (False, True), (False, True), (False, True))
-    for seed, (kind, precedence, start, end) in enumerate(combinations):
-        for count in (2, 3 + seed % 5):
-            problem = random_problem(kind, count, seed, precedence=precedence, start=start, end=end)
-            conditions = "".join(k for k, used in (("p", precedence), ("s", start), ("e", end)) if used)
-            yield Case(f"{kind}-{count}-{conditions}", problem, optimum(problem))
+    for seed, (kind, conditions) in enumerate(itertools.product(KINDS, itertools.product((False, True), repeat=5))):
+        precedence, start, end, tied, closed = conditions
+        count = (2, 3, 4, 5, 6, 3, 4, 5, 4, 7, 5)[seed % 11]
+        problem = random_problem(
+            kind, count, seed, precedence=precedence, start=start, end=end, tied=tied, closed=closed
+        )
+        letters = "".join(letter for letter, used in zip("psetc", conditions, strict=True) if used)
+        yield Case(f"{kind}-{count}-{letters}", problem, optimum(problem))
 
 
 def strokes(count: int, seed: int = 0) -> OrderingProblem:

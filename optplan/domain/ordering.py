@@ -1,13 +1,13 @@
 """The ordering problem: a precedence-constrained generalised travelling-salesman path, and its solution.
 
 Clusters are strokes, nodes are their traversals. A path visits one node of every cluster; it begins at a start depot
-and ends at an end depot, whose arcs may all be free. TSP path, ATSP, GTSP and SOP are special cases.
+and ends at an end depot, whose arcs may all be free, or it returns to where it began. TSP path, ATSP, GTSP and SOP are
+special cases.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Protocol
@@ -15,104 +15,25 @@ from typing import Any, Protocol
 import numpy as np
 
 from optplan.domain.arrays import FloatArray, IntArray, frozen_floats, frozen_ints
+from optplan.domain.costs import ArcCosts, ChosenCosts, DubinsCosts, EuclidCosts, MatrixCosts
+from optplan.domain.enforced import chains, missing_connections
 from optplan.domain.errors import InputError
 from optplan.domain.progress import ProgressCallback
 from optplan.domain.stop import StopReason, StopRule
 
-
-class ArcCosts(Protocol):
-    """Costs of arcs between nodes; infinite where there is none, never NaN or minus infinity."""
-
-    def __len__(self) -> int:
-        """Number of nodes."""
-
-    def pairs(self, tails: IntArray, heads: IntArray) -> FloatArray:
-        """Costs (k,) of the arcs tails[i] -> heads[i]."""
-
-
-@dataclass(frozen=True, eq=False)
-class MatrixCosts:
-    """Costs written out.
-
-    Parameters
-    ----------
-    matrix : (n, n); matrix[i, j] is the cost of going from the exit of node i to the entry of node j
-    """
-
-    matrix: FloatArray
-
-    def __post_init__(self) -> None:
-        matrix = frozen_floats(self.matrix, "the cost matrix", (None, None), finite=False)
-        if matrix.shape[0] != matrix.shape[1]:
-            raise InputError(f"the cost matrix is {matrix.shape[0]} x {matrix.shape[1]}; expected a square one")
-        if np.isneginf(matrix).any():
-            place = [int(k) for k in np.argwhere(np.isneginf(matrix))[0]]
-            raise InputError(f"the cost matrix{place} is minus infinity; expected a number or +infinity")
-        object.__setattr__(self, "matrix", matrix)
-
-    def __len__(self) -> int:
-        return len(self.matrix)
-
-    def pairs(self, tails: IntArray, heads: IntArray) -> FloatArray:
-        """Costs (k,) of the arcs tails[i] -> heads[i]."""
-        return self.matrix[tails, heads]
-
-
-@dataclass(frozen=True, eq=False)
-class EuclidCosts:
-    """Straight lines.
-
-    Parameters
-    ----------
-    exits, entries : (n, d) m, where node i is left and entered
-    """
-
-    exits: FloatArray
-    entries: FloatArray
-
-    def __post_init__(self) -> None:
-        exits = frozen_floats(self.exits, "exits", (None, None))
-        object.__setattr__(self, "exits", exits)
-        object.__setattr__(self, "entries", frozen_floats(self.entries, "entries", exits.shape))
-
-    def __len__(self) -> int:
-        return len(self.exits)
-
-    def pairs(self, tails: IntArray, heads: IntArray) -> FloatArray:
-        """Costs (k,) of the arcs tails[i] -> heads[i], m."""
-        lengths: FloatArray = np.linalg.norm(self.exits[tails] - self.entries[heads], axis=-1)
-        return lengths
-
-
-@dataclass(frozen=True, eq=False)
-class DubinsCosts:
-    """Shortest paths of a car that only drives forwards.
-
-    Parameters
-    ----------
-    exits, entries : (n, 3) x, y, heading: m, m, rad
-    radius : turning radius, m, > 0
-    batch : function (starts (k, 3), ends (k, 3), radius) -> lengths (k,); the geometry layer supplies it
-    """
-
-    exits: FloatArray
-    entries: FloatArray
-    radius: float
-    batch: Callable[[FloatArray, FloatArray, float], FloatArray]
-
-    def __post_init__(self) -> None:
-        exits = frozen_floats(self.exits, "exits", (None, 3))
-        object.__setattr__(self, "exits", exits)
-        object.__setattr__(self, "entries", frozen_floats(self.entries, "entries", exits.shape))
-        if not (math.isfinite(self.radius) and self.radius > 0):
-            raise InputError(f"the turning radius is {self.radius} m; expected a finite number above 0")
-
-    def __len__(self) -> int:
-        return len(self.exits)
-
-    def pairs(self, tails: IntArray, heads: IntArray) -> FloatArray:
-        """Costs (k,) of the arcs tails[i] -> heads[i], m."""
-        return self.batch(self.exits[tails], self.entries[heads], self.radius)
+__all__ = [
+    "ArcCosts",
+    "ChosenCosts",
+    "DubinsCosts",
+    "EuclidCosts",
+    "MatrixCosts",
+    "Ordering",
+    "OrderingProblem",
+    "Solver",
+    "Status",
+    "TracePoint",
+    "precedence_cycle",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,12 +46,18 @@ class OrderingProblem:
     costs : arc costs between nodes of different clusters (n nodes)
     start_costs, end_costs : (n,) cost of beginning with and of ending with a node; zeros for a free start or end,
         infinite where a node may not be first or last
-    node_costs : (n,) what a node costs over the cheapest of its cluster, >= 0
+    node_costs : (n,) what a node costs wherever it is, usually over the cheapest of its cluster
     precedence : (k, 2) pairs of clusters: the first before the second, not necessarily directly
+    enforced : (k, 3) connection, tail node, head node. Connections are numbered 0, 1, ...; of each of them one arc
+        has to be used, so that its two clusters are visited one directly after the other. Connections that share
+        clusters form chains
+    closed : the path returns from its last node to its first, and the cost of that arc counts. Everything else, such as
+        precedence and what the first and the last node cost, is about the order as it is listed
 
     Raises
     ------
-    InputError : shapes that do not fit, NaN, or precedence with a cycle (which is named)
+    InputError : shapes that do not fit, NaN, precedence with a cycle (which is named), or enforced connections that
+        contradict each other or the precedence
     """
 
     cluster: IntArray
@@ -139,6 +66,8 @@ class OrderingProblem:
     end_costs: FloatArray = field(default_factory=lambda: np.zeros(0))
     node_costs: FloatArray = field(default_factory=lambda: np.zeros(0))
     precedence: IntArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    enforced: IntArray = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
+    closed: bool = False
 
     def __post_init__(self) -> None:
         cluster = frozen_ints(self.cluster, "cluster", (None,))
@@ -153,8 +82,9 @@ class OrderingProblem:
             values = frozen_floats(
                 given if len(given) else np.zeros(count), name, (count,), finite=name == "node_costs"
             )
-            if np.isneginf(values).any() or (name == "node_costs" and (values < 0).any()):
-                raise InputError(f"{name} holds {values.min()}; expected numbers of 0 or more")
+            if np.isneginf(values).any():
+                place = int(np.flatnonzero(np.isneginf(values))[0])
+                raise InputError(f"{name}[{place}] is minus infinity; expected a number or +infinity")
             object.__setattr__(self, name, values)
         pairs = frozen_ints(self.precedence, "precedence", (None, 2))
         object.__setattr__(self, "precedence", pairs)
@@ -163,6 +93,23 @@ class OrderingProblem:
         cycle = precedence_cycle(self.clusters, pairs)
         if cycle:
             raise InputError(f"precedence has a cycle: {' before '.join(map(str, cycle))}")
+        enforced = frozen_ints(self.enforced, "enforced", (None, 3))
+        object.__setattr__(self, "enforced", enforced)
+        if len(enforced):
+            self._check_chains()
+
+    def _check_chains(self) -> None:
+        """Nothing may have to be visited in the middle of a chain of enforced connections."""
+        chain_of = np.arange(self.clusters)
+        for chain in chains(self.cluster, self.enforced, self.precedence):
+            chain_of[chain] = min(chain)
+        outside = chain_of[self.precedence]
+        cycle = precedence_cycle(self.clusters, outside[outside[:, 0] != outside[:, 1]])
+        if cycle:
+            raise InputError(
+                f"enforced connections contradict precedence: cluster {cycle[0]} and those tied to it would have to be "
+                f"visited both before and after cluster {cycle[1]}"
+            )
 
     @property
     def nodes(self) -> int:
@@ -180,11 +127,14 @@ class OrderingProblem:
         return np.searchsorted(self.cluster, np.arange(self.clusters + 1))
 
     def cost_of(self, nodes: Any) -> float:
-        """Cost of visiting these nodes in this order (0 for none): start, arcs, node costs, end."""
+        """Cost of visiting these nodes in this order (0 for none): start, arcs, node costs, end, the way back."""
         order = np.asarray(nodes, dtype=np.int64)
         if len(order) == 0:
             return 0.0
-        arcs = self.costs.pairs(order[:-1], order[1:]).sum()
+        tails, heads = order[:-1], order[1:]
+        if self.closed and len(order) > 1:
+            tails, heads = order, np.roll(order, -1)
+        arcs = self.costs.pairs(tails, heads).sum()
         return float(self.start_costs[order[0]] + arcs + self.end_costs[order[-1]] + self.node_costs[order].sum())
 
     def faults(self, nodes: Any) -> list[str]:
@@ -203,6 +153,7 @@ class OrderingProblem:
             position[visited] = np.arange(len(visited))
             broken = position[self.precedence[:, 0]] >= position[self.precedence[:, 1]]
             faults += [f"cluster {a} must come before cluster {b}" for a, b in self.precedence[broken].tolist()]
+            faults += [f"enforced connection {k} is not driven" for k in missing_connections(self.enforced, order)]
             if not math.isfinite(self.cost_of(order)):
                 faults.append("the cost is infinite: an arc is used that does not exist")
         return faults

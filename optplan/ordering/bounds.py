@@ -73,9 +73,9 @@ def lower_bound(problem: OrderingProblem, stop: StopRule | RunningStop | None = 
     """No order costs less than this; infinite when there is provably none, minus infinity when nothing is known.
 
     Most of the nodes are forgotten: going from one cluster to another costs at least the cheapest arc between their
-    terminals, in either direction. A path is a spanning tree of terminals plus two depot arcs, whose least cost is
-    raised by weights on terminals (Held and Karp, "The travelling-salesman problem and minimum spanning trees",
-    1970). Valid under precedence, which it ignores.
+    terminals, in either direction. A path is a spanning tree of terminals plus two depot arcs, a closed path one plus
+    a link; their least cost is raised by weights on terminals (Held and Karp, "The travelling-salesman problem and
+    minimum spanning trees", 1970). Valid under precedence, which it ignores.
 
     Parameters
     ----------
@@ -98,9 +98,11 @@ def lower_bound(problem: OrderingProblem, stop: StopRule | RunningStop | None = 
     np.minimum.at(start, ways.enter, problem.start_costs)
     np.minimum.at(end, ways.leave, problem.end_costs)
     if size <= DENSE_TERMINALS:
-        bound, numbers = _ascent(_terminal_matrix(problem, ways), ways, start, end, clock)
+        bound, numbers = _ascent(_terminal_matrix(problem, ways), ways, start, end, clock, problem.closed)
     else:
         bound, numbers = _nearest(problem, ways, start, end)
+    if problem.closed:
+        bound += float(start.min() + end.min())
     bound += float(np.minimum.reduceat(problem.node_costs, first).sum())
     return bound if math.isinf(bound) else bound - SAFETY * (abs(bound) + numbers)
 
@@ -135,8 +137,15 @@ def _depot(start: FloatArray, end: FloatArray) -> tuple[float, int, int]:
     return min((float(start[i] + end[j]), int(i), int(j)) for i in a for j in b if i != j)
 
 
+def _cheapest_link(matrix: FloatArray, shift: FloatArray) -> tuple[float, int, int]:
+    """The cheapest link that closes a path: cost, its two terminals."""
+    weights = matrix + shift + shift[:, None]
+    a, b = divmod(int(weights.argmin()), len(weights))
+    return float(weights[a, b]), a, b
+
+
 def _ascent(
-    matrix: FloatArray, ways: Terminals, start: FloatArray, end: FloatArray, clock: RunningStop
+    matrix: FloatArray, ways: Terminals, start: FloatArray, end: FloatArray, clock: RunningStop, closed: bool
 ) -> tuple[float, float]:
     """Best 1-tree bound over weights on terminals, and the size of the numbers summed up in it."""
     from optplan.ordering._kernels.trees import spanning_tree
@@ -149,7 +158,7 @@ def _ascent(
     for round_ in range(int(np.clip(ASCENT_WORK / count**2, 60, ROUNDS))):
         degree: IntArray = np.zeros(count, dtype=np.int64)
         tree = spanning_tree(matrix, ways.mate, shift, degree, key, origin, seen)
-        ends, a, b = _depot(start + shift, end + shift)
+        ends, a, b = _cheapest_link(matrix, shift) if closed else _depot(start + shift, end + shift)
         if math.isinf(tree + ends):
             return math.inf, 0.0  # no spanning tree of finite arcs, so no path either
         degree[a] += 1
@@ -185,12 +194,12 @@ def _nearest(problem: OrderingProblem, ways: Terminals, start: FloatArray, end: 
         two: FloatArray = np.sort(np.column_stack([distances, beyond, beyond]), axis=1)[:, :2]
     else:
         two = np.sort(_terminal_matrix(problem, ways), axis=1)[:, :2]
-    ends = _depot(start, end)[0]
+    ends = 0.0 if problem.closed else _depot(start, end)[0]
     if not math.isfinite(ends):
         return math.inf, 0.0
     two = np.where(np.isfinite(two), two, 0.0)
     single = ways.mate < 0
     # a path has two clusters with one link only; take off the dearest
-    dearest = np.sort(np.where(single, two[:, 1], two[:, 0]))[-2:]
-    bound = 0.5 * float(two[:, 0].sum() + two[single, 1].sum() - dearest.sum()) + ends
+    dearest = 0.0 if problem.closed else float(np.sort(np.where(single, two[:, 1], two[:, 0]))[-2:].sum())
+    bound = 0.5 * (float(two[:, 0].sum() + two[single, 1].sum()) - dearest) + ends
     return bound, float(np.abs(two).sum()) + abs(ends)

@@ -13,7 +13,8 @@ from optplan.domain.errors import InputError, SolverError
 from optplan.domain.ordering import Ordering, OrderingProblem, Status, TracePoint
 from optplan.domain.progress import Progress, ProgressCallback, silent
 from optplan.domain.stop import RunningStop, StopReason, StopRule
-from optplan.ordering.reduce import distinct_nodes
+from optplan.ordering.opened import Opened, opened, rotated
+from optplan.ordering.reduce import reduced
 
 OPTIMAL_GAP = 1e-6
 """A smaller relative gap than this is rounding."""
@@ -111,18 +112,25 @@ class Method:
     Parameters
     ----------
     name, summary : for people
-    search : works on a `Run` over a problem of two clusters or more without duplicate nodes; says why it stopped
+    search : works on a `Run` over a problem of two clusters or more without duplicate nodes and without enforced
+        connections; says why it stopped
     refuse : why a problem is out of reach, or None
+    closed : whether it takes closed paths; if not, it is given open ones instead, see `opened`
     """
 
     name: str
     summary: str
     search: Callable[[Run], StopReason]
     refuse: Callable[[OrderingProblem], str | None] = _welcome
+    closed: bool = False
 
     def refusal(self, problem: OrderingProblem) -> str | None:
         """Why this problem is out of reach, or None when it is welcome."""
-        return None if problem.clusters <= 1 else self.refuse(distinct_nodes(problem)[0])
+        return self._refusal(reduced(problem).problem)
+
+    def _refusal(self, problem: OrderingProblem) -> str | None:
+        paths = [problem] if self.closed or not problem.closed else [way.problem for way in opened(problem)]
+        return next((why for path in paths if path.clusters > 1 and (why := self.refuse(path))), None)
 
     def solve(
         self,
@@ -142,18 +150,55 @@ class Method:
         if start is not None and (faults := problem.faults(start)):
             raise InputError(f"the start is no solution: {faults[0]}")
         clock = stop.start()
-        small, original, same = distinct_nodes(problem)
-        run = Run(small, clock, seed, progress=progress or silent)
+        smaller = reduced(problem)
+        run = Run(smaller.problem, clock, seed, progress=progress or silent)
         if start is not None and problem.clusters:
-            run.start = same[np.asarray(start, dtype=np.int64)]
+            run.start = smaller.shrink(np.asarray(start, dtype=np.int64))
             run.offer(run.start)
-        if small.clusters <= 1:
-            stopped = _trivial(run)
-        elif reason := self.refuse(small):
+        if reason := self._refusal(run.problem):
             raise SolverError(f"{self.name} cannot take this problem: {reason}")
+        if run.problem.closed and not self.closed and run.problem.clusters > 1:
+            stopped = self._search_opened(run)
         else:
-            stopped = self.search(run)
-        return _answer(problem, run, original[run.nodes], stopped, self.name)
+            stopped = _trivial(run) if run.problem.clusters <= 1 else self.search(run)
+        nodes = smaller.expand(run.nodes) if len(run.nodes) else run.nodes
+        return _answer(problem, run, nodes, stopped, self.name)
+
+    def _search_opened(self, run: Run) -> StopReason:
+        """Search the open paths one after the other; the tour's bound is the least of theirs."""
+        ways = opened(run.problem)
+        known = rotated(run.problem, run.nodes, ways)
+        least, stopped = math.inf, StopReason.FINISHED
+        for number, way in enumerate(ways):
+            share = 1.0 / (len(ways) - number)
+            part = _part(run, way, share)
+            if len(known) and known[0] == way.root:
+                part.start = way.shrink(known)
+                part.offer(part.start)
+            stop = _trivial(part) if way.problem.clusters <= 1 else self.search(part)
+            run.iterations += part.iterations
+            run.message = part.message
+            if len(part.nodes):
+                run.offer(way.expand(part.nodes))
+            least = min(least, part.bound + way.extra)
+            if stop in (StopReason.CANCELLED, StopReason.TARGET, StopReason.FAILED):
+                return stop
+            stopped = stop if stop is not StopReason.FINISHED else stopped
+        run.prove(least)
+        return stopped
+
+
+def _part(run: Run, way: Opened, share: float) -> Run:
+    """A run of one of several open paths, with its share of what is left of the limits."""
+    rule = run.rule
+    left = None if rule.iterations is None else math.ceil(share * max(0, rule.iterations - run.iterations))
+    seconds = max(1e-3, share * run.clock.remaining)
+    limits = replace(rule, seconds=seconds, iterations=left, target=rule.target - way.extra)
+
+    def tell(seen: Progress) -> None:
+        run.progress(replace(seen, cost=min(run.cost, seen.cost + way.extra), bound=-math.inf))
+
+    return Run(way.problem, limits.start(), run.seed, progress=tell)
 
 
 def _trivial(run: Run) -> StopReason:

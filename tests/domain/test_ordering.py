@@ -61,7 +61,7 @@ BROKEN: list[Callable[[], object]] = [
     lambda: _problem(start_costs=[0, 1]),
     lambda: _problem(start_costs=[0, 1, math.nan]),
     lambda: _problem(end_costs=[0, 1, -math.inf]),
-    lambda: _problem(node_costs=[0, 1, -1]),
+    lambda: _problem(node_costs=[0, 1, -math.inf]),
     lambda: _problem(node_costs=[0, 1, math.inf]),
     lambda: _problem(precedence=[[0, 2]]),
     lambda: _problem(precedence=[[-1, 0]]),
@@ -121,3 +121,13 @@ def test_gaps() -> None:
         _answer(10, 8, Status.OPTIMAL)
     with pytest.raises(InputError, match="NaN"):
         _answer(math.nan, 8)
+
+
+def test_a_closed_path_pays_for_the_way_back() -> None:
+    problem = _problem(closed=True)
+    assert problem.cost_of([0, 2]) == 2 + 5
+    assert problem.cost_of([0, 1]) == 1 + 3
+    blocked = _problem(costs=MatrixCosts(array([[0, 1, 2], [math.inf, 0, 4], [5, 0, 0]])), closed=True)
+    assert blocked.faults([0, 1]) == ["the cost is infinite: an arc is used that does not exist"]
+    alone = OrderingProblem(np.zeros(1, dtype=np.int64), MatrixCosts(np.ones((1, 1))), closed=True)
+    assert alone.cost_of([0]) == 0
