@@ -133,6 +133,16 @@ class Programme:
             float(self._highs.getInfo().objective_function_value),
         )
 
+    def probe(self, iterations: int) -> float:
+        """The objective after so many iterations of the dual simplex, infinite when infeasible: an estimate."""
+        self._set(simplex_iteration_limit=self._highs.getInfo().simplex_iteration_count + iterations)
+        self._limit(math.inf)
+        self._highs.run()
+        self._set(simplex_iteration_limit=2**31 - 1)
+        if self._highs.getModelStatus().name == "kInfeasible":
+            return math.inf
+        return float(self._highs.getInfo().objective_function_value)
+
     def slack(self) -> Bools:
         """(rows,) which rows are basic: dropping them changes nothing."""
         import highspy
