@@ -82,8 +82,7 @@ def root(
         start = Method("nn", "", nearest_neighbour).solve(problem, left, 0).nodes
     if len(start):
         loop.learn(tour.tour_of(start))
-    if incumbent_cost < loop.upper:
-        loop.upper = incumbent_cost
+    loop.upper = incumbent_cost
     loop.start()
     loop.run()
     reduced = loop.reduced.copy()
