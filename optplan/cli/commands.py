@@ -427,14 +427,24 @@ def show(
         Path | None, typer.Option("--output", "-o", help=".png, .svg or .pdf; default: beside the plan.")
     ] = None,
     dpi: Annotated[int, typer.Option(min=20, max=1200, help="Pixels per inch of a PNG.")] = 150,
+    convergence: Annotated[
+        bool, typer.Option("--convergence", help="What the solver found and proved over time, instead of the plan.")
+    ] = False,
     force: Force = False,
     json: Json = False,
 ) -> None:
     """Picture of a plan."""
     import optplan as op
 
-    target = out or file.with_suffix(".png")
-    op.draw(op.load_plan(file), target, overwrite=force, dpi=dpi)
+    plan = op.load_plan(file)
+    if convergence:
+        if plan.ordering is None:
+            raise InputError("the plan has no order yet; run optplan order first", str(file))
+        target = out or file.with_name(f"{file.stem}-convergence.png")
+        op.draw_convergence(plan.ordering, target, title=plan.job.name, overwrite=force, dpi=dpi)
+    else:
+        target = out or file.with_suffix(".png")
+        op.draw(plan, target, overwrite=force, dpi=dpi)
     _tell_file(target, json)
 
 
