@@ -42,11 +42,18 @@ def _txt(plan: Plan, spacing: float) -> str:
     return points_text(plan, spacing)
 
 
+def _tsplib(plan: Plan, _: float) -> str:
+    from optplan.exports.tsplib import tsplib_text
+
+    return tsplib_text(plan)
+
+
 FORMATS = {
     form.name: form
     for form in (
         Format("csv", "equally spaced points with time, speed, heading, curvature and tool state", ".csv", _csv),
         Format("txt", "lines 'x y tool', y down, a blank line at every turn on the spot", ".txt", _txt),
+        Format("tsplib", "the ordering problem of its strokes, for other solvers (GTSP or PCGTSP)", ".gtsp", _tsplib),
     )
 }
 """What `export_plan` writes, by name."""
