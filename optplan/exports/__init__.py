@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -80,6 +81,8 @@ def export_plan(
 
     if to not in FORMATS:
         raise InputError(f"there is no format {to!r}; expected one of {', '.join(FORMATS)}")
+    if spacing is not None and not (math.isfinite(spacing) and spacing > 0):
+        raise InputError(f"the spacing is {spacing} m; expected a finite number above 0")
     text = FORMATS[to].write(plan, usual_spacing(plan) if spacing is None else spacing)
     write_atomically(Path(file), text, overwrite=overwrite)
 
