@@ -1,4 +1,4 @@
-"""`exact`: the Pyomo model with positions (MTZ), solved by HiGHS in a child process."""
+"""`mtz-lifted`: the Pyomo model with positions (MTZ), solved by HiGHS in a child process."""
 
 from __future__ import annotations
 
