@@ -14,7 +14,7 @@ from optplan.ordering.baselines.nearest import nearest_feasible_neighbour, neare
 from optplan.ordering.baselines.tree import kernel_first, refuse_no_forest
 from optplan.ordering.baselines.two_opt import two_opt
 from optplan.ordering.bounds import lower_bound
-from optplan.ordering.exact import mtz_by_highs, refuse_many_arcs
+from optplan.ordering.exact import mtz_by_highs, plain_mtz_by_highs, refuse_many_arcs
 from optplan.ordering.local import local_search
 from optplan.ordering.method import Method
 from optplan.ordering.subsets import refuse_many_subsets, subset_programme
@@ -28,6 +28,7 @@ _METHODS = (
     Method(
         "mtz-lifted", "mixed-integer model (MTZ, lifted) by HiGHS: proves, or bounds", mtz_by_highs, refuse_many_arcs
     ),
+    Method("mtz", "mixed-integer model (MTZ) as published, by HiGHS", plain_mtz_by_highs, refuse_many_arcs),
     Method("nn", "nearest neighbour as published: no precedence", nearest_neighbour_as_published, closed=True),
     Method("nn-feasible", "nearest feasible neighbour, ties downwards", nearest_feasible_neighbour, closed=True),
     Method("2opt", "nearest neighbour and 2-opt as published: no precedence", two_opt, closed=True),
