@@ -11,6 +11,7 @@ from optplan.ordering.arrays import refuse_unknown_costs
 from optplan.ordering.auto import choose_and_solve
 from optplan.ordering.baselines.genetic import genetic, genetic_feasible
 from optplan.ordering.baselines.nearest import nearest_feasible_neighbour, nearest_neighbour_as_published
+from optplan.ordering.baselines.shifted import noon_bean, refuse_precedence_or_many_cities
 from optplan.ordering.baselines.tree import kernel_first, refuse_no_forest
 from optplan.ordering.baselines.two_opt import two_opt
 from optplan.ordering.bounds import lower_bound
@@ -29,6 +30,7 @@ _METHODS = (
         "mtz-lifted", "mixed-integer model (MTZ, lifted) by HiGHS: proves, or bounds", mtz_by_highs, refuse_many_arcs
     ),
     Method("mtz", "mixed-integer model (MTZ) as published, by HiGHS", plain_mtz_by_highs, refuse_many_arcs),
+    Method("noon-bean", "as a travelling-salesman problem, solved by MTZ", noon_bean, refuse_precedence_or_many_cities),
     Method("nn", "nearest neighbour as published: no precedence", nearest_neighbour_as_published, closed=True),
     Method("nn-feasible", "nearest feasible neighbour, ties downwards", nearest_feasible_neighbour, closed=True),
     Method("2opt", "nearest neighbour and 2-opt as published: no precedence", two_opt, closed=True),

@@ -15,7 +15,7 @@ from optplan.ordering import SOLVERS, lower_bound, solve
 from tests.ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, strokes
 
 CASES = list(cases())
-MODELS = {"mtz-lifted", "mtz"}
+MODELS = {"mtz-lifted", "mtz", "noon-bean"}
 """Solvers that hand a mixed-integer model to a child process, so that every problem takes a while."""
 PROVES = {"brute", "auto"} | MODELS
 SEARCHES = {"local", "nn", "nn-feasible", "2opt", "tree", "ga", "ga-feasible"}
@@ -23,6 +23,7 @@ ANYTIME = {"local", "ga", "ga-feasible"}
 """Searches that go on for as long as they may."""
 NEEDS_FOREST = {"tree"}
 """Solvers that refuse precedence which is no containment."""
+REFUSES_PRECEDENCE = {"noon-bean"}
 EVERY = pytest.mark.parametrize("solver", list(SOLVERS))
 TOLERANCE = 1e-7
 
@@ -50,6 +51,9 @@ def welcome(solver: str, problem: OrderingProblem) -> None:
     """Skip what a solver may refuse; anything else is refused by none."""
     if solver in NEEDS_FOREST and SOLVERS[solver].refusal(problem):
         pytest.skip("precedence is no forest")
+    if solver in REFUSES_PRECEDENCE and len(problem.precedence):
+        assert SOLVERS[solver].refusal(problem)
+        pytest.skip("it knows no precedence")
 
 
 def test_each_solver_is_put_into_a_group() -> None:
@@ -76,6 +80,7 @@ def test_answers_bracket_the_optimum(solver: str, case: Case) -> None:
 
 
 MODEL_CASES = [("mtz-lifted", case) for case in CASES[1::4]] + [("mtz", case) for case in CASES[2::20]]
+MODEL_CASES += [("noon-bean", case) for case in CASES[::9] if not len(case.problem.precedence)]
 
 
 @pytest.mark.parametrize(("solver", "case"), MODEL_CASES, ids=[f"{case.name}-{name}" for name, case in MODEL_CASES])
