@@ -451,7 +451,12 @@ def show(
 @app.command("export")
 def export_command(
     file: PlanFile,
-    to: Annotated[str, typer.Option("--to", "-t", help="csv: points with time and tool; txt: lines 'x y tool'.")],
+    to: Annotated[
+        str,
+        typer.Option(
+            "--to", "-t", help="csv: points with time and tool; txt: lines 'x y tool'; tsplib: the ordering problem."
+        ),
+    ],
     out: OutFile = None,
     spacing: Annotated[str | None, typer.Option(help="Greatest distance between points, e.g. 5cm.")] = None,
     force: Force = False,
