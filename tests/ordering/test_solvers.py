@@ -85,7 +85,7 @@ def test_answers_bracket_the_optimum(solver: str, case: Case) -> None:
 
 
 MODEL_CASES = [("mtz-lifted", case) for case in CASES[1::4]] + [("mtz", case) for case in CASES[2::20]]
-MODEL_CASES += [("noon-bean", case) for case in CASES[::9] if not len(case.problem.precedence)]
+MODEL_CASES += [("noon-bean", case) for case in CASES[::15] if not len(case.problem.precedence)]
 
 
 @pytest.mark.parametrize(("solver", "case"), MODEL_CASES, ids=[f"{case.name}-{name}" for name, case in MODEL_CASES])
