@@ -32,6 +32,10 @@ HighsError = ChildError
 """HiGHS crashed or could not be started; says how."""
 
 
+class InfeasibleError(ChildError):
+    """The model says in a row without variables that there is no solution."""
+
+
 @dataclass(frozen=True, eq=False)
 class Compiled:
     """A model as arrays: min costs x + offset with row and column bounds, matrix (rows, columns) by columns."""
@@ -70,10 +74,19 @@ class Result:
 
 
 def compile_model(model: Any) -> Compiled:
-    """Compile a linear or mixed-integer linear Pyomo model (minimisation)."""
+    """Compile a linear or mixed-integer linear Pyomo model (minimisation).
+
+    Raises
+    ------
+    InfeasibleError : a row without variables says that there is no solution
+    """
+    from pyomo.common.errors import InfeasibleConstraintException
     from pyomo.repn.plugins.standard_form import LinearStandardFormCompiler
 
-    form = LinearStandardFormCompiler().write(model, mixed_form=True)
+    try:
+        form = LinearStandardFormCompiler().write(model, mixed_form=True)
+    except InfeasibleConstraintException as error:
+        raise InfeasibleError(str(error)) from None
     matrix = form.A.tocsc()
     columns = tuple(form.columns)
     kind = np.array([row.bound_type for row in form.rows], dtype=np.int64)

@@ -16,7 +16,7 @@ from optplan.ordering.baselines.shifted import noon_bean, refuse_precedence_or_m
 from optplan.ordering.baselines.tree import kernel_first, refuse_no_forest
 from optplan.ordering.baselines.two_opt import two_opt
 from optplan.ordering.bounds import lower_bound
-from optplan.ordering.exact import mtz_by_highs, plain_mtz_by_highs, refuse_many_arcs
+from optplan.ordering.exact import flow_by_highs, mtz_by_highs, plain_mtz_by_highs, refuse_many_arcs
 from optplan.ordering.lkh import lkh, refuse_without_lkh
 from optplan.ordering.local import local_search
 from optplan.ordering.method import Method
@@ -32,6 +32,7 @@ _METHODS = (
         "mtz-lifted", "mixed-integer model (MTZ, lifted) by HiGHS: proves, or bounds", mtz_by_highs, refuse_many_arcs
     ),
     Method("mtz", "mixed-integer model (MTZ) as published, by HiGHS", plain_mtz_by_highs, refuse_many_arcs),
+    Method("flow", "mixed-integer model (single-commodity flow) by HiGHS", flow_by_highs, refuse_many_arcs),
     Method("noon-bean", "as a travelling-salesman problem, solved by MTZ", noon_bean, refuse_precedence_or_many_cities),
     Method("rows", "circles of a facade strictly row by row, by MTZ", rows, refuse_rows),
     Method("rows-split", "the same, rows cut where precedence changes", rows_split, refuse_rows_split),

@@ -15,7 +15,7 @@ from optplan.ordering import SOLVERS, lower_bound, solve
 from tests.ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, strokes
 
 CASES = list(cases())
-MODELS = {"mtz-lifted", "mtz", "noon-bean"}
+MODELS = {"mtz-lifted", "mtz", "flow", "noon-bean"}
 """Solvers that hand a mixed-integer model to a child process, so that every problem takes a while."""
 PROVES = {"brute", "auto"} | MODELS
 SEARCHES = {"local", "nn", "nn-feasible", "2opt", "tree", "ga", "ga-feasible"}
@@ -85,6 +85,7 @@ def test_answers_bracket_the_optimum(solver: str, case: Case) -> None:
 
 
 MODEL_CASES = [("mtz-lifted", case) for case in CASES[1::4]] + [("mtz", case) for case in CASES[2::20]]
+MODEL_CASES += [("flow", case) for case in CASES[3::12]]
 MODEL_CASES += [("noon-bean", case) for case in CASES[::15] if not len(case.problem.precedence)]
 
 
