@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -24,10 +25,12 @@ RELIABLE = 4
 class Brancher:
     """Chooses arcs by reliability branching.
 
+    ended : stops probing
     gains, counts : (2, n, n) sum of the objective's rises for a unit of the arc's value, and how many: used, unused
     """
 
     lp: ArcProgramme
+    ended: Callable[[], bool]
     gains: FloatArray = field(init=False)
     counts: IntArray = field(init=False)
 
@@ -52,6 +55,8 @@ class Brancher:
         if unsure:
             basis = lp.programme.basis()
             for k in unsure:
+                if self.ended():
+                    break
                 rises = self._probe(int(columns[k]), basis)
                 for side in (0, 1):
                     if math.isfinite(rises[side]):

@@ -58,7 +58,7 @@ class CutLoop:
 
     def __post_init__(self) -> None:
         self.programme = ArcProgramme(self.tour, self.seed)
-        self.separator = Separator(self.tour)
+        self.separator = Separator(self.tour, self.ended)
         self.grain = granularity(self.tour.costs)
         self.reduced = np.where(np.isfinite(self.tour.costs), 0.0, math.inf)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 Marks = np.ndarray[tuple[int, int], np.dtype[np.uint8]]
 WORK = 3_000_000
 """Arcs looked at between two looks at the stop rule: some 0.02 s."""
+DEEP = 20
+"""How many times that much goes into pairs of clusters far apart in the order."""
 MOST = 2_000
 """Most cuts looked at in a round, before the best are chosen."""
 VIOLATION = 0.01
@@ -24,9 +27,13 @@ VIOLATION = 0.01
 
 @dataclass
 class Separator:
-    """Finds violated cuts of a rooted tour by minimum cuts in the graph of its fractional arcs."""
+    """Finds violated cuts of a rooted tour by minimum cuts in the graph of its fractional arcs.
+
+    When `ended` says so it stops looking, and what it did not find means nothing.
+    """
 
     tour: RootedTour
+    ended: Callable[[], bool] = field(default=lambda: False)
     _cluster: IntArray = field(init=False)
     _hubs: IntArray = field(init=False)
     _shared: IntArray = field(init=False)
@@ -57,10 +64,11 @@ class Separator:
     def violated(self, tails: IntArray, heads: IntArray, values: FloatArray, most: int, *, deep: bool) -> Marks:
         """Up to `most` cuts (c, n + 1) that the point violates, the most violated ones; of all pairs when `deep`."""
         net, capacity = self._support(tails, heads, values)
-        marks, lacks = self._look(net, capacity, self.basic, 2**62)
+        marks, lacks, _ = self._look(net, capacity, self.basic, 2**62)
         if deep and len(marks) < most // 4 and len(self.further):
             turned = np.roll(self.further, -self._next, axis=0)
-            more, lack = self._look(net, capacity, turned, 20 * WORK)
+            more, lack, seen = self._look(net, capacity, turned, DEEP * WORK)
+            self._next = (self._next + seen) % len(turned)
             marks, lacks = np.concatenate([marks, more]), np.concatenate([lacks, lack])
         if len(marks) == 0:
             return marks
@@ -85,13 +93,27 @@ class Separator:
         capacity[net.slot] = np.concatenate([values[used], visits[nodes], visits[nodes]])
         return net, capacity
 
-    def _look(self, net: Network, capacity: FloatArray, pairs: IntArray, work: int) -> tuple[Marks, FloatArray]:
+    def _look(self, net: Network, capacity: FloatArray, pairs: IntArray, work: int) -> tuple[Marks, FloatArray, int]:
+        """Cuts between pairs of clusters, their values, and how many pairs were looked at."""
         from optplan.ordering._kernels.separate import separate
 
         marks = np.zeros((min(MOST, 2 * len(pairs) + 2), self.tour.nodes + 1), dtype=np.uint8)
         lacks = np.zeros(len(marks))
         pairs = np.ascontiguousarray(pairs)
-        found, _ = separate(
-            net, capacity, self._cluster, self.tour.order, self._hubs, pairs, 0, work, 1.0 - VIOLATION, marks, lacks
-        )
-        return marks[:found], lacks[:found]
+        found = seen = 0
+        while seen < len(pairs) and found + 2 <= len(marks) and work > 0 and not self.ended():
+            more, seen = separate(
+                net,
+                capacity,
+                self._cluster,
+                self.tour.order,
+                self._hubs,
+                pairs,
+                seen,
+                WORK,
+                1.0 - VIOLATION,
+                marks[found:],
+                lacks[found:],
+            )
+            found, work = found + more, work - WORK
+        return marks[:found], lacks[:found], seen

@@ -54,7 +54,7 @@ class Tree:
     least: float = math.inf
 
     def __post_init__(self) -> None:
-        self.brancher = Brancher(self.loop.programme)
+        self.brancher = Brancher(self.loop.programme, self.loop.ended)
 
     def run(self) -> bool:
         """Look at all subproblems; whether none is left. The loop's bound rises as they are closed."""
@@ -120,7 +120,7 @@ class Tree:
                 if cuts:
                     lp.purge(AGE)
                     lp.add_cuts(marks)
-            if not added and not cuts:
+            if not added and not cuts and not loop.ended():
                 if not whole:
                     return self._split(branch, bound)
                 loop.learn(self._tour_of(x))
