@@ -499,10 +499,15 @@ def solvers(json: Json = False) -> None:
     """The solvers there are."""
     from optplan.ordering import SOLVERS
 
+    known = SOLVERS.values()
     if json:
-        output.print_json([{"name": solver.name, "summary": solver.summary} for solver in SOLVERS.values()])
-    else:
-        output.print_table(("solver", ""), [(solver.name, solver.summary) for solver in SOLVERS.values()])
+        abilities = ("name", "summary", "proves", "precedence", "improves")
+        output.print_json([{name: getattr(solver, name) for name in abilities} for solver in known])
+        return
+    marks = [("yes" if s.proves else "", "yes" if s.precedence else "", "yes" if s.improves else "") for s in known]
+    rows = [(solver.name, *mark, solver.summary) for solver, mark in zip(known, marks, strict=True)]
+    output.print_table(("solver", "proves", "precedence", "any-time", ""), rows)
+    print("proves: gives a bound; precedence: knows rules of order; any-time: improves as long as it may")
 
 
 @app.command()

@@ -16,6 +16,7 @@ from optplan.ordering.baselines.shifted import noon_bean, refuse_precedence_or_m
 from optplan.ordering.baselines.tree import kernel_first, refuse_no_forest
 from optplan.ordering.baselines.two_opt import two_opt
 from optplan.ordering.bounds import lower_bound
+from optplan.ordering.cutting.directed import refuse_many_nodes, solve_directed
 from optplan.ordering.exact import flow_by_highs, mtz_by_highs, plain_mtz_by_highs, refuse_many_arcs
 from optplan.ordering.lkh import lkh, refuse_without_lkh
 from optplan.ordering.local import local_search
@@ -25,24 +26,54 @@ from optplan.ordering.subsets import refuse_many_subsets, subset_programme
 __all__ = ["SOLVERS", "lower_bound", "solve"]
 
 _METHODS = (
-    Method("auto", "proof where proof is cheap, else search and a bound", choose_and_solve, refuse_unknown_costs),
-    Method("local", "2-opt, or-opt and node choice, then perturbations: any-time", local_search, refuse_unknown_costs),
-    Method("brute", "dynamic programming over subsets: proves small problems", subset_programme, refuse_many_subsets),
     Method(
-        "mtz-lifted", "mixed-integer model (MTZ, lifted) by HiGHS: proves, or bounds", mtz_by_highs, refuse_many_arcs
+        "auto",
+        "proof where proof is cheap, else search and a bound",
+        choose_and_solve,
+        refuse_unknown_costs,
+        proves=True,
+        improves=True,
     ),
-    Method("mtz", "mixed-integer model (MTZ) as published, by HiGHS", plain_mtz_by_highs, refuse_many_arcs),
-    Method("flow", "mixed-integer model (single-commodity flow) by HiGHS", flow_by_highs, refuse_many_arcs),
-    Method("noon-bean", "as a travelling-salesman problem, solved by MTZ", noon_bean, refuse_precedence_or_many_cities),
-    Method("rows", "circles of a facade strictly row by row, by MTZ", rows, refuse_rows),
+    Method(
+        "local", "2-opt, or-opt and node choice, then perturbations", local_search, refuse_unknown_costs, improves=True
+    ),
+    Method("cuts", "cutting planes, then branch and cut", solve_directed, refuse_many_nodes, closed=True, proves=True),
+    Method("brute", "dynamic programming over all subsets", subset_programme, refuse_many_subsets, proves=True),
+    Method("mtz-lifted", "mixed-integer model: positions, lifted", mtz_by_highs, refuse_many_arcs, proves=True),
+    Method("mtz", "the same as published", plain_mtz_by_highs, refuse_many_arcs, proves=True),
+    Method("flow", "mixed-integer model: flow of one commodity", flow_by_highs, refuse_many_arcs, proves=True),
+    Method(
+        "noon-bean",
+        "as a travelling-salesman problem, weights shifted",
+        noon_bean,
+        refuse_precedence_or_many_cities,
+        proves=True,
+        precedence=False,
+    ),
+    Method("rows", "circles of a facade strictly row by row, as published", rows, refuse_rows),
     Method("rows-split", "the same, rows cut where precedence changes", rows_split, refuse_rows_split),
-    Method("nn", "nearest neighbour as published: no precedence", nearest_neighbour_as_published, closed=True),
+    Method("nn", "nearest neighbour, as published", nearest_neighbour_as_published, closed=True, precedence=False),
     Method("nn-feasible", "nearest feasible neighbour, ties downwards", nearest_feasible_neighbour, closed=True),
-    Method("2opt", "nearest neighbour and 2-opt as published: no precedence", two_opt, closed=True),
+    Method("2opt", "nearest neighbour and 2-opt, as published", two_opt, closed=True, precedence=False),
     Method("tree", "what lies inside a stroke first, then the nearest", kernel_first, refuse_no_forest, closed=True),
-    Method("ga", "genetic algorithm as published: no precedence", genetic, refuse_unknown_costs, closed=True),
-    Method("ga-feasible", "genetic algorithm, repaired", genetic_feasible, refuse_unknown_costs, closed=True),
-    Method("lkh", "the program LKH, where it is installed", lkh, refuse_without_lkh),
+    Method(
+        "ga",
+        "genetic algorithm, as published",
+        genetic,
+        refuse_unknown_costs,
+        closed=True,
+        precedence=False,
+        improves=True,
+    ),
+    Method(
+        "ga-feasible",
+        "the same, children repaired to keep precedence",
+        genetic_feasible,
+        refuse_unknown_costs,
+        closed=True,
+        improves=True,
+    ),
+    Method("lkh", "the program LKH, where it is installed", lkh, refuse_without_lkh, improves=True),
 )
 
 SOLVERS: dict[str, Solver] = {method.name: method for method in _METHODS}

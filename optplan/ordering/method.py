@@ -126,6 +126,7 @@ class Method:
         connections; says why it stopped
     refuse : why a problem is out of reach, or None
     closed : whether it takes closed paths; if not, it is given open ones instead, see `opened`
+    proves, precedence, improves : see `Solver`
     """
 
     name: str
@@ -133,6 +134,9 @@ class Method:
     search: Callable[[Run], StopReason]
     refuse: Callable[[OrderingProblem], str | None] = _welcome
     closed: bool = False
+    proves: bool = False
+    precedence: bool = True
+    improves: bool = False
 
     def refusal(self, problem: OrderingProblem) -> str | None:
         """Why this problem is out of reach, or None when it is welcome."""
