@@ -9,8 +9,12 @@ from optplan.domain.progress import ProgressCallback
 from optplan.domain.stop import StopRule
 from optplan.ordering.arrays import refuse_unknown_costs
 from optplan.ordering.auto import choose_and_solve
+from optplan.ordering.beam import beam_search
 from optplan.ordering.bounds import lower_bound
+from optplan.ordering.branch import branch_and_bound, refuse_many_nodes
 from optplan.ordering.exact import mtz_by_highs, refuse_many_arcs
+from optplan.ordering.ideals import prove_by_ideals, refuse_loose_precedence
+from optplan.ordering.ideals_bound import refuse_large_tables
 from optplan.ordering.local import local_search, nearest_neighbour
 from optplan.ordering.method import Method
 from optplan.ordering.subsets import refuse_many_subsets, subset_programme
@@ -23,6 +27,13 @@ _METHODS = (
     Method("2opt", "2-opt, or-opt and node choice, then perturbations: any-time", local_search, refuse_unknown_costs),
     Method("brute", "dynamic programming over subsets: proves small problems", subset_programme, refuse_many_subsets),
     Method("exact", "mixed-integer model (MTZ) by HiGHS: proves, or gives a bound", mtz_by_highs, refuse_many_arcs),
+    Method("bnb", "depth-first branch and bound: proves a dozen strokes", branch_and_bound, refuse_many_nodes),
+    Method(
+        "beam", "beam search over order ideals: any-time, proves dense precedence", beam_search, refuse_large_tables
+    ),
+    Method(
+        "dp", "dynamic programme over order ideals: proves dense precedence", prove_by_ideals, refuse_loose_precedence
+    ),
 )
 
 SOLVERS: dict[str, Solver] = {method.name: method for method in _METHODS}

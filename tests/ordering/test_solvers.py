@@ -15,7 +15,7 @@ from optplan.ordering import SOLVERS, lower_bound, solve
 from tests.ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, strokes
 
 CASES = list(cases())
-PROVES = {"exact", "brute", "auto"}
+PROVES = {"exact", "brute", "auto", "bnb", "dp", "beam"}
 SEARCHES = {"nn", "2opt"}
 EVERY = pytest.mark.parametrize("solver", list(SOLVERS))
 TOLERANCE = 1e-7
