@@ -65,7 +65,7 @@ def branch_and_bound(run: Run) -> StopReason:
         best = descend(network, link, least_end, tree, best, step, work, counters)
         run.iterations = int(counters[VISITED])
         if counters[FOUND] > found:
-            run.offer(tree.best)
+            run.offer(tree.paths[1])
     goal.conclude(run, math.inf, rounding + SAFETY * (abs(run.cost) if math.isfinite(run.cost) else 0.0))
     return StopReason.FINISHED
 
@@ -75,29 +75,25 @@ def _root(after: IntArray, link: FloatArray, nodes: int) -> Tree:
     from optplan.ordering._kernels.branch import Tree
 
     count = len(link)
-    rest = np.zeros(count + 1)
-    rest[0] = link.sum()
+    places, sums = np.zeros((2, count + 1), dtype=np.int64), np.zeros((2, count + 1))
+    places[0], sums[1, 0] = -1, link.sum()
     return Tree(
         children=np.zeros((count, nodes), dtype=np.int64),
-        near=np.zeros((count, nodes)),
-        bound=np.zeros((count, nodes)),
-        tried=np.full(count + 1, -1, dtype=np.int64),
-        size=np.zeros(count + 1, dtype=np.int64),
-        cost=np.zeros(count + 1),
-        rest=rest,
-        path=np.zeros(count, dtype=np.int64),
-        best=np.zeros(count, dtype=np.int64),
+        keys=np.zeros((2, count, nodes)),
+        places=places,
+        sums=sums,
+        paths=np.zeros((2, count), dtype=np.int64),
         waiting=np.bincount(after[count + 1 :], minlength=count),
     )
 
 
 def _open_bound(tree: Tree, depth: int) -> float:
     """The least bound of the children still to be tried, and of the one that is being looked at."""
-    least = -math.inf if tree.tried[0] < 0 else math.inf
+    tried, size = tree.places
+    least = -math.inf if tried[0] < 0 else math.inf
     for d in range(depth + 1):
-        current = int(tree.tried[d])
-        # of a child whose own children are listed, these are looked at instead
-        listed = d < depth and tree.tried[d + 1] >= 0
-        for k in range(max(current - (0 if listed else 1), 0), int(tree.size[d]) if current >= 0 else 0):
-            least = min(least, float(tree.bound[d, k]))
-    return least
+        if tried[d] >= 0:
+            # where the children of a child are listed, they are looked at instead
+            listed = d < depth and tried[d + 1] >= 0
+            least = min(least, tree.keys[1, d, max(tried[d] - (not listed), 0) : size[d]].min(initial=math.inf))
+    return float(least)

@@ -15,20 +15,17 @@ DEPTH, VISITED, FOUND = 0, 1, 2
 class Tree(NamedTuple):
     """The way from the root to the present place, and what is still to be tried beside it.
 
-    children (m, n), nearest first, of which tried[d] (m + 1,) of size[d] have been, -1 when they are not listed yet;
-    near, bound (m, n) distance and bound of each child; cost, rest (m + 1,) of the path, and of the cheapest links into
-    clusters still to come; path, best (m,); waiting (m,) predecessors to come of each cluster, -1 on the path.
+    At each depth: children (m, n), nearest first; keys (2, m, n), how near they are, and their bounds; places
+    (2, m + 1), how many of them have been tried, -1 when they are not listed yet, and how many there are; sums
+    (2, m + 1), the cost of the path, and of the cheapest links into clusters still to come. paths (2, m): the present
+    and the best one. waiting (m,): predecessors to come of each cluster, -1 on the path.
     """
 
     children: IntArray
-    near: FloatArray
-    bound: FloatArray
-    tried: IntArray
-    size: IntArray
-    cost: FloatArray
-    rest: FloatArray
-    path: IntArray
-    best: IntArray
+    keys: FloatArray
+    places: IntArray
+    sums: FloatArray
+    paths: IntArray
     waiting: IntArray
 
 
@@ -50,40 +47,43 @@ def descend(
     step[0] and less step[1] times the size of the cost.
     """
     count, cluster, after = len(link), network.cluster, network.after
+    tried, size, path, waiting = tree.places[0], tree.places[1], tree.paths[0], tree.waiting
+    costs, rest, bound = tree.sums[0], tree.sums[1], tree.keys[1]
     while work > 0 and counters[DEPTH] >= 0:
         depth = counters[DEPTH]
-        if tree.tried[depth] < 0:
+        if tried[depth] < 0:
             _open(network, link, least_end, tree, depth, cutoff)
-        k = tree.tried[depth]
-        if k >= tree.size[depth]:
-            tree.tried[depth] = -1
+        k = tried[depth]
+        if k >= size[depth]:
+            tried[depth] = -1
             counters[DEPTH] = depth - 1
             if depth > 0:
-                c = cluster[tree.path[depth - 1]]
-                tree.waiting[c] = 0
+                c = cluster[path[depth - 1]]
+                waiting[c] = 0
                 for a in range(after[c], after[c + 1]):
-                    tree.waiting[after[a]] += 1
+                    waiting[after[a]] += 1
             continue
-        tree.tried[depth] = k + 1
-        if tree.bound[depth, k] >= cutoff:
+        tried[depth] = k + 1
+        if bound[depth, k] >= cutoff:
             continue
         work -= 1
         counters[VISITED] += 1
         j = tree.children[depth, k]
-        tree.path[depth] = j
-        cost = tree.cost[depth] + (network.arcs[tree.path[depth - 1], j] if depth > 0 else network.start[j])
+        path[depth] = j
+        cost = costs[depth] + (network.arcs[path[depth - 1], j] if depth > 0 else network.start[j])
         if depth + 1 == count:
             total = cost + network.end[j]
             cutoff = total - step[0] - step[1] * abs(total)
-            tree.best[:] = tree.path
+            for d in range(count):
+                tree.paths[1, d] = path[d]
             counters[FOUND] += 1
             continue
         c = cluster[j]
-        tree.waiting[c] = -1
+        waiting[c] = -1
         for a in range(after[c], after[c + 1]):
-            tree.waiting[after[a]] -= 1
-        tree.cost[depth + 1] = cost
-        tree.rest[depth + 1] = tree.rest[depth] - link[c]
+            waiting[after[a]] -= 1
+        costs[depth + 1] = cost
+        rest[depth + 1] = rest[depth] - link[c]
         counters[DEPTH] = depth + 1
     return cutoff
 
@@ -91,21 +91,21 @@ def descend(
 @njit(cache=True, nogil=True)
 def _open(network: Network, link: FloatArray, least_end: float, tree: Tree, depth: int, cutoff: float) -> None:
     """List the children of the present place that are better than the cutoff, nearest first."""
-    count, first, size = len(link), network.first, 0
-    children, near, bounds = tree.children[depth], tree.near[depth], tree.bound[depth]
+    count, first, listed = len(link), network.first, 0
+    children, near, bounds = tree.children[depth], tree.keys[0, depth], tree.keys[1, depth]
     for c in range(count):
         if tree.waiting[c] != 0:
             continue
         for j in range(first[c], first[c + 1]):
-            cost = network.arcs[tree.path[depth - 1], j] if depth > 0 else network.start[j]
+            cost = network.arcs[tree.paths[0, depth - 1], j] if depth > 0 else network.start[j]
             ending = network.end[j] if depth + 1 == count else least_end
-            bound = tree.cost[depth] + cost + tree.rest[depth] - link[c] + ending
+            bound = tree.sums[0, depth] + cost + tree.sums[1, depth] - link[c] + ending
             if bound < cutoff:
-                k = size
+                k = listed
                 while k > 0 and near[k - 1] > cost:
                     children[k], near[k], bounds[k] = children[k - 1], near[k - 1], bounds[k - 1]
                     k -= 1
                 children[k], near[k], bounds[k] = j, cost, bound
-                size += 1
-    tree.size[depth] = size
-    tree.tried[depth] = 0
+                listed += 1
+    tree.places[1, depth] = listed
+    tree.places[0, depth] = 0

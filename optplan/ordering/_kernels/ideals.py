@@ -107,7 +107,7 @@ def _slot(layer: Layer, candidates: Candidates, s: int, node: int, name: np.uint
     while slots[place] >= 0:
         k = slots[place]
         # names may collide: the sets decide
-        if candidates.name[k] == name and candidates.node[k] == node and _same(layer, s, candidates.parent[k]):
+        if candidates.name[k] == name and candidates.node[k] == node and _same(layer, s, int(candidates.parent[k])):
             return place
         place = (place + 1) & mask
     return place
@@ -183,9 +183,10 @@ def expand(
 @njit(cache=True, nogil=True)
 def index(layer: Layer, candidates: Candidates, count: int) -> None:
     """Fill the slots anew."""
-    candidates.slots[:] = -1
+    for place in range(len(candidates.slots)):
+        candidates.slots[place] = -1
     for k in range(count):
-        slot = _slot(layer, candidates, candidates.parent[k], candidates.node[k], candidates.name[k])
+        slot = _slot(layer, candidates, int(candidates.parent[k]), int(candidates.node[k]), candidates.name[k])
         candidates.slots[slot] = k
 
 
