@@ -1,10 +1,12 @@
-"""Jobs that ship with optplan."""
+"""Jobs and small ordering instances that ship with optplan."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from optplan.domain.errors import InputError
+
+SUFFIXES = (".svg", ".json", ".atsp", ".sop", ".gtsp", ".pcglns")
 
 
 def _folder() -> Path:
@@ -15,14 +17,14 @@ def _folder() -> Path:
 
 
 def instance_names() -> tuple[str, ...]:
-    """Names of all shipped jobs, such as "drawings/lion", sorted."""
+    """Names of everything shipped, such as "drawings/lion", sorted."""
     folder = _folder()
-    files = [file for file in folder.glob("*/*") if file.suffix in (".svg", ".json")]
+    files = [file for file in folder.glob("*/*") if file.suffix in SUFFIXES]
     return tuple(sorted(file.relative_to(folder).with_suffix("").as_posix() for file in files))
 
 
 def instance(name: str) -> Path:
-    """File of a shipped job.
+    """File of a shipped job or instance.
 
     Parameters
     ----------
@@ -36,4 +38,4 @@ def instance(name: str) -> Path:
     if len(matches) != 1:
         raise InputError(f"there is no instance {name!r}; expected one of {', '.join(instance_names())}")
     file = _folder() / matches[0]
-    return next(candidate for suffix in (".svg", ".json") if (candidate := file.with_suffix(suffix)).exists())
+    return next(candidate for suffix in SUFFIXES if (candidate := file.with_suffix(suffix)).exists())

@@ -103,7 +103,7 @@ def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> P
     if before.cover is None:
         raise InputError("the plan has no strokes yet; run the stage cover first")
     job, robot, options = before.job, before.robot, before.options
-    ways = traversals(before.cover.strokes, robot, options)
+    ways = traversals(before.cover.strokes, robot, options, before.cover.links)
     problem = ordering_problem(ways, before.cover, robot, options)
     order = options.order
     rule = stop or StopRule(seconds=order.seconds or math.inf, iterations=order.iterations)

@@ -23,7 +23,12 @@ DUBINS_ENTRIES = 16
 """Vertices at which a closed stroke may be entered when headings count, unless the options say otherwise."""
 
 
-def traversals(strokes: Sequence[Stroke], robot: Robot, options: Options | None = None) -> Traversals:
+def traversals(
+    strokes: Sequence[Stroke],
+    robot: Robot,
+    options: Options | None = None,
+    links: Sequence[tuple[int, int, int, int]] = (),
+) -> Traversals:
     """All ways of driving each stroke.
 
     An open stroke can be driven from either end, a closed one from any of its vertices, in both directions where
@@ -34,13 +39,21 @@ def traversals(strokes: Sequence[Stroke], robot: Robot, options: Options | None 
     ----------
     strokes : (m,) what has to be driven
     robot, options : who drives it, and how
+    links : enforced connections, as `Cover` has them: their vertices are never thinned out
     """
     options = options or Options()
+    kept: dict[int, list[int]] = {}
+    for a, i, b, j in links:
+        kept.setdefault(a, []).append(i)
+        kept.setdefault(b, []).append(j)
     tolerance, radius = tolerance_of(options.page, robot.tool), least_radius(robot, options)
     speed = options.time.work_speed or robot.mobility.work_speed
     both = metric_of(robot, options) != "euclid"
     most = options.order.entries or (DUBINS_ENTRIES if both else None)
-    parts = [_ways(stroke, tolerance, radius, options.connect.corner, both, most) for stroke in strokes]
+    parts = [
+        _ways(stroke, tolerance, radius, options.connect.corner, both, most, kept.get(k, []))
+        for k, stroke in enumerate(strokes)
+    ]
     index = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
     shapes = ((0,), (0,), (0, 5), (0, 5), (0,), (0,))
     vertex, reverse, entry, exit, length, turned = (
@@ -52,7 +65,7 @@ def traversals(strokes: Sequence[Stroke], robot: Robot, options: Options | None 
 
 
 def _ways(
-    stroke: Stroke, tolerance: float, radius: float, corner: float, both: bool, most: int | None
+    stroke: Stroke, tolerance: float, radius: float, corner: float, both: bool, most: int | None, kept: list[int]
 ) -> tuple[FloatArray, ...]:
     """entry vertex, reverse, entry state, exit state, length and angle turned of every way of one stroke."""
     points = stroke.points
@@ -74,7 +87,8 @@ def _ways(
     if stroke.closed:
         choice = np.arange(count) if stroke.entry is None else np.array([stroke.entry])
         if most is not None and len(choice) > most:
-            choice = choice[np.linspace(0, count, most, endpoint=False).astype(np.int64)]
+            choice = np.union1d(choice[np.linspace(0, count, most, endpoint=False).astype(np.int64)], kept)
+            choice = choice.astype(np.int64)
         into, out_of = headings[choice - 1], headings[choice]
         rows: list[tuple[IntArray, int, IntArray, IntArray, FloatArray, FloatArray]]
         rows = [(choice, 0, choice, choice, out_of, into)]
@@ -177,7 +191,33 @@ def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Opti
         costs = EuclidCosts(ways.exit[:, :3], ways.entry[:, :3])
         place = None if start is None else np.array([*start, 0.0])
         begin = np.zeros(0) if place is None else np.linalg.norm(ways.entry[:, :3] - place, axis=1)
-    return OrderingProblem(ways.stroke, costs, start_costs=begin, precedence=np.array(cover.precedence).reshape(-1, 2))
+    return OrderingProblem(
+        ways.stroke,
+        costs,
+        start_costs=begin,
+        precedence=np.array(cover.precedence).reshape(-1, 2),
+        enforced=_enforced(ways, cover),
+    )
+
+
+def _enforced(ways: Traversals, cover: Cover) -> IntArray:
+    """Enforced connections between traversals: rows of connection, the one left, the one entered."""
+    closed = np.array([stroke.closed for stroke in cover.strokes])[ways.stroke]
+    last = np.array([len(stroke.points) - 1 for stroke in cover.strokes])[ways.stroke]
+    leaves = np.where(closed, ways.entry_vertex, last - ways.entry_vertex)
+    rows: list[tuple[int, int, int]] = []
+    for number, (a, i, b, j) in enumerate(cover.links):
+        before = len(rows)
+        for (out, at), (into, there) in (((a, i), (b, j)), ((b, j), (a, i))):
+            tails = np.flatnonzero((ways.stroke == out) & (leaves == at))
+            heads = np.flatnonzero((ways.stroke == into) & (ways.entry_vertex == there))
+            rows += [(number, tail, head) for tail in tails.tolist() for head in heads.tolist()]
+        if len(rows) == before:
+            names = f"{cover.strokes[a].id!r} and {cover.strokes[b].id!r}"
+            raise InputError(
+                f"the connection of {names} cannot be driven: one of them must be entered elsewhere", "link"
+            )
+    return np.array(rows, dtype=np.int64).reshape(-1, 3)
 
 
 def _start(cover: Cover, options: Options) -> tuple[float, float] | None:

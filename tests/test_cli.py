@@ -322,3 +322,34 @@ def test_a_full_disk_behind_stdout_is_one_line() -> None:
         )
     assert ran.returncode == 2
     assert ran.stderr.count("\n") == 1
+
+
+def test_order_solves_library_instances(run: Runner) -> None:
+    Path("three.atsp").write_text(
+        "TYPE: ATSP\nDIMENSION: 3\nEDGE_WEIGHT_TYPE: EXPLICIT\nEDGE_WEIGHT_FORMAT: FULL_MATRIX\n"
+        "EDGE_WEIGHT_SECTION\n0 1 9\n9 0 1\n1 9 0\nEOF\n"
+    )
+    done = run("order", "three.atsp", "-o", "three.tour")
+    assert done.code == 0, done.err
+    assert "optimal by auto: 3" in done.out
+    assert "TOUR_SECTION\n1\n2\n3\n-1" in Path("three.tour").read_text()
+    again = run("order", "three.atsp", "-o", "three.tour")
+    assert again.code == 2
+    assert "exists" in again.err
+    facts = json.loads(run("order", "three.atsp", "--json", "--solver", "nn").out)
+    assert facts["cost"] == 3
+    Path("three.atsp").write_text("TYPE: ATSP\nDIMENSION: 3\n")
+    broken = run("order", "three.atsp")
+    assert broken.code == 2
+    assert broken.err.startswith("error: three.atsp")
+
+
+def test_compare_prints_a_table_and_writes_all_runs(run: Runner) -> None:
+    done = run("compare", "drawings/logo", "-s", "nn", "-s", "auto", "-b", "1s", "-o", "runs.csv")
+    assert done.code == 0, done.err
+    assert "optimal" in done.out
+    assert len(Path("runs.csv").read_text().splitlines()) == 3
+    assert run("compare", "drawings/logo", "-s", "nn", "-o", "runs.csv").code == 2
+    wrong = run("compare", "drawings/logo", "-s", "best")
+    assert wrong.code == 2
+    assert "there is no solver 'best'" in wrong.err

@@ -152,7 +152,7 @@ def _picked(ways: Traversals, seed: int) -> list[int]:
 def test_the_path_costs_what_the_problem_says(cover: Cover, robot: Robot, seed: int) -> None:
     options = _options(robot)
     # a car gets strokes that it can follow
-    strokes = split_at_corners([replace(s, entry=None) for s in cover.strokes], robot, options, 0.05)
+    strokes = split_at_corners([replace(s, entry=None) for s in cover.strokes], robot, options, 0.05)[0]
     cover = replace(cover, strokes=tuple(strokes if robot is CAR else cover.strokes))
     ways = traversals(cover.strokes, robot, options)
     problem = ordering_problem(ways, cover, robot, options)

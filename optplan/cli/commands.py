@@ -20,8 +20,10 @@ from optplan.cli.settings import (
     ElementFill,
     Entries,
     EntryVertex,
+    InnerFirst,
     Inset,
     Iterations,
+    Links,
     Margin,
     Metric,
     RobotName,
@@ -109,6 +111,8 @@ def plan_command(
     boundary: Boundary = None,
     fill: ElementFill = None,
     entry: EntryVertex = None,
+    inner_first: InnerFirst = None,
+    link: Links = None,
     solver: SolverName = None,
     metric: Metric = None,
     time_limit: TimeLimit = None,
@@ -312,6 +316,8 @@ def cover(
     boundary: Boundary = None,
     fill: ElementFill = None,
     entry: EntryVertex = None,
+    inner_first: InnerFirst = None,
+    link: Links = None,
 ) -> None:
     """Cover: from the job to strokes."""
     _stage("cover", file, out, dict(locals()), rest, force, quiet, json)
@@ -319,7 +325,10 @@ def cover(
 
 @app.command()
 def order(
-    file: PlanFile,
+    file: Annotated[
+        Path,
+        typer.Argument(help="A plan, or an ordering instance (.tsp .atsp .sop .gtsp .pcglns).", show_default=False),
+    ],
     out: OutFile = None,
     rest: Rest = False,
     force: Force = False,
@@ -334,7 +343,34 @@ def order(
     entries: Entries = None,
 ) -> None:
     """Order: which stroke after which, entered where."""
-    _stage("order", file, out, dict(locals()), rest, force, quiet, json)
+    from optplan.cli.ordering import is_instance, order_instance
+
+    if is_instance(file):
+        order_instance(file, out, settings_of({}, dict(locals())), force, quiet, json)
+    else:
+        _stage("order", file, out, dict(locals()), rest, force, quiet, json)
+
+
+@app.command("compare")
+def compare_command(
+    instances: Annotated[
+        list[str], typer.Argument(help="Drawings, plans, library files, or names of shipped ones.", show_default=False)
+    ],
+    solver: Annotated[list[str] | None, typer.Option("--solver", "-s", help="Repeatable; default: auto.")] = None,
+    seed: Annotated[list[int] | None, typer.Option(help="Repeatable; default: 0.")] = None,
+    budget: Annotated[
+        list[str] | None, typer.Option("--budget", "-b", help="Seconds a run, e.g. 1s. Repeatable; default: 10s.")
+    ] = None,
+    robot: RobotName = None,
+    out: Annotated[Path | None, typer.Option("--output", "-o", help="CSV of all runs.", show_default=False)] = None,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+) -> None:
+    """Compare solvers: instances x solvers x seeds x budgets, as a table and CSV."""
+    from optplan.cli.ordering import compare_and_print
+
+    compare_and_print(instances, solver, seed, budget, robot or USUAL_ROBOT, out, force, quiet, json)
 
 
 @app.command()
@@ -391,21 +427,36 @@ def show(
         Path | None, typer.Option("--output", "-o", help=".png, .svg or .pdf; default: beside the plan.")
     ] = None,
     dpi: Annotated[int, typer.Option(min=20, max=1200, help="Pixels per inch of a PNG.")] = 150,
+    convergence: Annotated[
+        bool, typer.Option("--convergence", help="What the solver found and proved over time, instead of the plan.")
+    ] = False,
     force: Force = False,
     json: Json = False,
 ) -> None:
     """Picture of a plan."""
     import optplan as op
 
-    target = out or file.with_suffix(".png")
-    op.draw(op.load_plan(file), target, overwrite=force, dpi=dpi)
+    plan = op.load_plan(file)
+    if convergence:
+        if plan.ordering is None:
+            raise InputError("the plan has no order yet; run optplan order first", str(file))
+        target = out or file.with_name(f"{file.stem}-convergence.png")
+        op.draw_convergence(plan.ordering, target, title=plan.job.name, overwrite=force, dpi=dpi)
+    else:
+        target = out or file.with_suffix(".png")
+        op.draw(plan, target, overwrite=force, dpi=dpi)
     _tell_file(target, json)
 
 
 @app.command("export")
 def export_command(
     file: PlanFile,
-    to: Annotated[str, typer.Option("--to", "-t", help="csv: points with time and tool; txt: lines 'x y tool'.")],
+    to: Annotated[
+        str,
+        typer.Option(
+            "--to", "-t", help="csv: points with time and tool; txt: lines 'x y tool'; tsplib: the ordering problem."
+        ),
+    ],
     out: OutFile = None,
     spacing: Annotated[str | None, typer.Option(help="Greatest distance between points, e.g. 5cm.")] = None,
     force: Force = False,

@@ -106,18 +106,23 @@ def cancellable() -> Iterator[list[bool]]:
         signal.signal(signal.SIGINT, before)
 
 
-def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> None:
-    """A plain table; columns whose index is in `right` are right-aligned."""
+def print_table(
+    columns: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int] = (), *, wrap: bool = True
+) -> None:
+    """A plain table; columns whose index is in `right` are right-aligned. Without `wrap` it may exceed the terminal."""
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
     table = Table(box=box.SIMPLE_HEAD if any(columns) else None, pad_edge=False, show_header=any(columns))
     for k, name in enumerate(columns):
-        table.add_column(name, justify="right" if k in right else "left", overflow="fold")
+        table.add_column(name, justify="right" if k in right else "left", overflow="fold", no_wrap=not wrap)
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
-    console().print(table)
+    target = console()
+    if not wrap:
+        target.width = max(target.width, 200)
+    target.print(table)
 
 
 def print_notes(plan: Plan) -> None:

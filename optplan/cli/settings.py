@@ -37,6 +37,13 @@ ElementFill = Annotated[
     list[str] | None,
     typer.Option("--fill", help="Fill of one element: 'ID:direction=45,spacing=30cm,inset=10cm'. Repeatable."),
 ]
+InnerFirst = Annotated[
+    bool | None, typer.Option("--inner-first/--any-order", help="Drive what a closed line encloses before it.")
+]
+Links = Annotated[
+    list[str] | None,
+    typer.Option("--link", help="Join two strokes at drawn vertices: 'ID:0,ID:-1' (-1: the last). Repeatable."),
+]
 EntryVertex = Annotated[
     list[str] | None, typer.Option("--entry", help="Enter an element at a drawn vertex: 'ID:3'. Repeatable.")
 ]
@@ -58,6 +65,7 @@ _PLACES = {
     "spacing": ("cover", "spacing"),
     "inset": ("cover", "inset"),
     "boundary": ("cover", "boundary"),
+    "inner_first": ("cover", "inner_first"),
     "solver": ("order", "solver"),
     "metric": ("order", "metric"),
     "time_limit": ("order", "seconds"),
@@ -106,6 +114,9 @@ def settings_of(base: dict[str, Any], flags: dict[str, Any]) -> Options:
     for text in flags.get("fill") or ():
         id, fill = _element_fill(text)
         tables.setdefault("cover", {}).setdefault("elements", {})[id] = fill
+    if flags.get("link"):
+        links = tables.setdefault("cover", {}).setdefault("links", [])
+        tables["cover"]["links"] = [*links, *map(_link, flags["link"])]
     return _validated(tables, "settings")
 
 
@@ -162,6 +173,13 @@ def _pair(text: str, flag: str) -> tuple[str, str]:
     if len(parts) != 2:
         raise InputError(f"{text!r} is no place; expected X,Y", flag)
     return parts[0], parts[1]
+
+
+def _link(text: str) -> list[str | int]:
+    ends = [part.rpartition(":") for part in text.split(",")]
+    if len(ends) != 2 or not all(id.strip() and re.fullmatch(r"-?\d+", number.strip()) for id, _, number in ends):
+        raise InputError(f"{text!r} is no link; expected ID:K,ID:K, vertices from 0 on or -1 for the last", "--link")
+    return [value for id, _, number in ends for value in (id.strip(), int(number))]
 
 
 def _element_fill(text: str) -> tuple[str, dict[str, str]]:

@@ -25,12 +25,21 @@ def least_radius(robot: Robot, options: Options) -> float:
     return 1 / curvature if curvature > 0 else math.inf
 
 
-def split_at_corners(strokes: list[Stroke], robot: Robot, options: Options, tolerance: float) -> list[Stroke]:
-    """Strokes without corners, for a robot that cannot turn on the spot; other robots get them as they are."""
+def split_at_corners(
+    strokes: list[Stroke], robot: Robot, options: Options, tolerance: float
+) -> tuple[list[Stroke], list[int]]:
+    """Strokes without corners, for a robot that cannot turn on the spot; other robots get them as they are.
+
+    Returns
+    -------
+    parts : what the strokes are split into, in their order
+    source : of each part, the index of the stroke that it is a part of
+    """
     if robot.mobility.turns_on_spot:
-        return strokes
+        return strokes, list(range(len(strokes)))
     radius = least_radius(robot, options)
-    return [part for stroke in strokes for part in _split(stroke, tolerance, radius, options.connect.corner)]
+    parts = [_split(stroke, tolerance, radius, options.connect.corner) for stroke in strokes]
+    return [part for own in parts for part in own], [k for k, own in enumerate(parts) for _ in own]
 
 
 def tight_notes(strokes: list[Stroke], robot: Robot, options: Options, tolerance: float) -> list[Note]:

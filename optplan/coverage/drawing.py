@@ -10,11 +10,13 @@ import numpy as np
 
 from optplan.coverage.corners import split_at_corners, tight_notes
 from optplan.coverage.placing import Line, canvas_of, counter_clockwise, placed, placement
+from optplan.coverage.relations import connections, inner_before_outer, of_pieces
 from optplan.coverage.zigzag import zigzag
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError, LimitError, located
 from optplan.domain.job import Drawing, FillSettings, Note
 from optplan.domain.options import CoverOptions, Options, PageOptions
+from optplan.domain.ordering import precedence_cycle
 from optplan.domain.path import RAISED
 from optplan.domain.progress import Progress, ProgressCallback
 from optplan.domain.result import Area, Cover
@@ -59,13 +61,16 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
 
     strokes: list[Stroke] = []
     areas: list[Area] = []
+    vertices: dict[str, FloatArray] = {}
     for done, mark in enumerate(drawn):
         progress(Progress("cover", done / len(drawn), message=mark.element.id))
         lines = placed(mark.element, where, tolerance)
         if not lines:
             notes.append(Note("ignored", mark.element.id, "has no extent on the canvas"))
             continue
-        strokes += _outlines(mark, lines)
+        outlines = _outlines(mark, lines)
+        vertices |= {stroke.id: line.drawn for stroke, line in zip(outlines, lines, strict=False)}
+        strokes += outlines
         if mark.fill:
             new, made = _filled(mark, lines, robot.tool, options.cover, notes)
             strokes += new
@@ -73,15 +78,26 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
         if len(strokes) > MAX_STROKES:
             raise LimitError(f"there are more than {MAX_STROKES} strokes; widen the fill spacing or split it", job.name)
     notes += tight_notes(strokes, robot, options, tolerance)
-    strokes = split_at_corners(strokes, robot, options, tolerance)
+    inner = inner_before_outer(strokes) if options.cover.inner_first else []
+    strokes, source = split_at_corners(strokes, robot, options, tolerance)
     if not strokes:
         raise InputError("nothing in this drawing is to be drawn on this canvas", job.name)
     travels = [k for k, stroke in enumerate(strokes) if stroke.tool == RAISED]
-    chain = tuple(pairwise(travels))
+    rules = [*pairwise(travels), *of_pieces(inner, source)]
+    with located(job.name):
+        links = connections(options.cover.links, strokes, vertices)
+        _refuse_contradictions(strokes, rules)
     progress(Progress("cover", 1.0, message=f"{len(strokes)} strokes"))
     start = None if read.start is None else where.apply(read.start[None, :])[0]
     begin = None if start is None else (float(start[0]), float(start[1]))
-    return Cover(tuple(strokes), tuple(areas), chain, begin, canvas, tuple(notes))
+    return Cover(tuple(strokes), tuple(areas), tuple(rules), begin, canvas, tuple(notes), links)
+
+
+def _refuse_contradictions(strokes: list[Stroke], rules: list[tuple[int, int]]) -> None:
+    cycle = precedence_cycle(len(strokes), np.array(rules, dtype=np.int64).reshape(-1, 2))
+    if cycle:
+        names = " before ".join(strokes[k].id for k in cycle)
+        raise InputError(f"travel drawn by hand contradicts 'inner first': {names}")
 
 
 def _loop_note(robot: Robot, canvas: Canvas | None, options: Options) -> list[Note]:

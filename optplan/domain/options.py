@@ -11,6 +11,9 @@ from optplan.domain.job import FillSettings
 
 METRICS = ("auto", "euclid", "dubins")
 
+Link = tuple[str, int, str, int]
+"""An enforced connection: stroke and its drawn vertex, counted from 0 (-1: the last), twice."""
+
 
 @dataclass(frozen=True)
 class PageOptions:
@@ -44,6 +47,8 @@ class CoverOptions:
     inset : of the lines from the outline, m; None: what fits the boundary, or half the width of the tool without one
     boundary : whether the outline, half a tool width inside, is driven too: it gives areas a crisp edge
     elements : settings of single elements, by id; they win over the ones above
+    inner_first : whether whatever a closed line encloses is driven before it
+    links : connections that have to be driven, one stroke directly after the other
     """
 
     direction: float = 0.0
@@ -51,6 +56,8 @@ class CoverOptions:
     inset: float | None = None
     boundary: bool = True
     elements: tuple[tuple[str, FillSettings], ...] = ()
+    inner_first: bool = False
+    links: tuple[Link, ...] = ()
 
     def __post_init__(self) -> None:
         FillSettings(self.direction, self.spacing, self.inset)

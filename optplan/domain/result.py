@@ -47,6 +47,8 @@ class Cover:
     start : (x, y) m where the job says to begin, or None
     canvas : the canvas used, or None
     notes : what happened on the way: small areas lost, gaps closed ...
+    links : enforced connections: stroke, vertex, stroke, vertex; the one is left and the other entered there, or the
+        other way round, with nothing in between
     """
 
     strokes: tuple[Stroke, ...]
@@ -55,11 +57,16 @@ class Cover:
     start: tuple[float, float] | None = None
     canvas: Canvas | None = None
     notes: tuple[Note, ...] = ()
+    links: tuple[tuple[int, int, int, int], ...] = ()
 
     def __post_init__(self) -> None:
         ids = [stroke.id for stroke in self.strokes]
         if len(set(ids)) != len(ids):
             raise InputError("two strokes share an id")
+        for link in self.links:
+            for k, vertex in (link[:2], link[2:]):
+                if 0 <= k < len(self.strokes) and not 0 <= vertex < len(self.strokes[k].points):
+                    raise InputError(f"an enforced connection names vertex {vertex} of stroke {ids[k]!r}")
 
 
 @dataclass(frozen=True, eq=False)

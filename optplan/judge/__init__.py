@@ -17,7 +17,7 @@ from optplan.judge._speeds import speeds
 
 __all__ = ["verify"]
 
-_COVER_CHECKS = ("strokes", "deviation", "precedence")
+_COVER_CHECKS = ("strokes", "deviation", "precedence", "connections")
 
 
 def verify(plan: Plan) -> Report:
@@ -51,7 +51,7 @@ def verify(plan: Plan) -> Report:
         checks += unchecked(_COVER_CHECKS, "the plan has no strokes")
     else:
         done, deviation, exact = _strokes.strokes(path, samples, cover, limit)
-        checks += [done, deviation, _strokes.precedence(path, cover)]
+        checks += [done, deviation, _strokes.precedence(path, cover), _strokes.connections(path, samples, cover)]
     if plan.visits is None:
         checks += unchecked(["visits"], "the plan does not say which ways of driving were chosen")
     else:

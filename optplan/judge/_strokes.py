@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -97,6 +98,30 @@ def precedence(path: Path, cover: Cover) -> Check:
         detail = f"Stroke {cover.strokes[a].id} must come before {cover.strokes[b].id}"
         detail += f"; {len(broken)} of {len(cover.precedence)} rules of order are broken."
     return held("precedence", len(broken), 0, "", place, detail)
+
+
+def connections(path: Path, samples: Samples, cover: Cover) -> Check:
+    """Enforced connections that the path does not follow: from one place directly to the other, in either direction."""
+    done = [run for run in runs(path) if run.stroke < len(cover.strokes)]
+    lines = [_driven(samples, run) for run in done]
+    followed: set[int] = set()
+    for (one, left), (two, entered) in pairwise(zip(done, lines, strict=True)):
+        for k, (a, i, b, j) in enumerate(cover.links):
+            forth = (one.stroke, two.stroke) == (a, b)
+            if forth or (one.stroke, two.stroke) == (b, a):
+                ends = (cover.strokes[a].points[i], cover.strokes[b].points[j])
+                out, into = ends if forth else ends[::-1]
+                steps = (left[-1] - in_space(out[None])[0], entered[0] - in_space(into[None])[0])
+                if max(float(np.linalg.norm(step)) for step in steps) <= GAP:
+                    followed.add(k)
+    broken = [k for k in range(len(cover.links)) if k not in followed]
+    detail, place = f"{count_of(len(cover.links), 'enforced connection')}, all driven.", None
+    if broken:
+        a, i, b, _ = cover.links[broken[0]]
+        place = place_of(cover.strokes[a].points[i])
+        detail = f"The path does not go directly between {cover.strokes[a].id} and {cover.strokes[b].id} as asked"
+        detail += f"; {len(broken)} of {len(cover.links)} enforced connections are not driven."
+    return held("connections", len(broken), 0, "", place, detail)
 
 
 def visits(path: Path, samples: Samples, chosen: Traversals) -> Check:

@@ -84,9 +84,19 @@ class Run:
     def adopt(self, part: Run) -> None:
         """Take over what a part of this run has found."""
         self.iterations += part.iterations
+        self.remember(part)
         if len(part.nodes):
             self.offer(part.nodes)
         self.prove(part.bound)
+
+    def remember(self, part: Run, extra: float = 0.0, *, bounds: bool = True) -> None:
+        """Keep the history of a part, whose costs are `extra` less than those of this run."""
+        later = part.clock.started - self.clock.started
+        cost, bound = self.cost, self.bound
+        for point in part.trace:
+            cost = min(cost, point.cost + extra)
+            bound = max(bound, point.bound + extra) if bounds else bound
+            self.trace.append(TracePoint(later + point.seconds, cost, min(bound, cost)))
 
     def _note(self) -> None:
         self.trace.append(TracePoint(self.clock.elapsed, self.cost, min(self.bound, self.cost)))
@@ -178,6 +188,8 @@ class Method:
             stop = _trivial(part) if way.problem.clusters <= 1 else self.search(part)
             run.iterations += part.iterations
             run.message = part.message
+            # the bound of one path says nothing about the tour unless it is the only one
+            run.remember(part, way.extra, bounds=len(ways) == 1)
             if len(part.nodes):
                 run.offer(way.expand(part.nodes))
             least = min(least, part.bound + way.extra)

@@ -38,6 +38,10 @@ class CoverModel(Model):
     inset: Length | None = Field(None, description="of the lines from the outline; default: what fits the boundary")
     boundary: bool = Field(True, description="drive the outline too, half a tool width inside")
     elements: dict[str, FillModel] = Field(default_factory=dict, description="settings of single elements, by id")
+    inner_first: bool = Field(False, description="drive whatever a closed line encloses before it")
+    links: list[tuple[str, int, str, int]] = Field(
+        default_factory=list, description="enforced connections: stroke, drawn vertex (-1: the last), stroke, vertex"
+    )
 
 
 class OrderModel(Model):
@@ -82,7 +86,15 @@ def options_from(model: OptionsModel) -> Options:
     with located("options"):
         return Options(
             PageOptions(**model.page.model_dump()),
-            CoverOptions(cover.direction, cover.spacing, cover.inset, cover.boundary, elements),
+            CoverOptions(
+                cover.direction,
+                cover.spacing,
+                cover.inset,
+                cover.boundary,
+                elements,
+                cover.inner_first,
+                tuple(cover.links),
+            ),
             OrderOptions(**model.order.model_dump()),
             ConnectOptions(**model.connect.model_dump()),
             TimeOptions(**model.time.model_dump()),

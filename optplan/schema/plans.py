@@ -58,6 +58,7 @@ class CoverModel(Model):
     strokes: list[StrokeModel]
     areas: list[AreaModel] = Entry(default_factory=list)
     precedence: list[tuple[Whole, Whole]] = Entry(default_factory=list)
+    links: list[tuple[Whole, Whole, Whole, Whole]] = Entry(default_factory=list)
     start: Point | None = None
     canvas: CanvasModel | None = None
     notes: list[NoteModel] = Entry(default_factory=list)
@@ -243,6 +244,7 @@ def _check_references(plan: Plan) -> None:
     if plan.cover is not None:
         columns.append(("cover.strokes.tool", [stroke.tool for stroke in plan.cover.strokes], 0, settings))
         columns.append(("cover.precedence", plan.cover.precedence, 0, strokes))
+        columns.append(("cover.links", [(a, b) for a, _, b, _ in plan.cover.links], 0, strokes))
         columns.append(("cover.areas.tool", [area.tool for area in plan.cover.areas], 0, settings))
     for name, values, least, count in columns:
         numbers = np.asarray(values, dtype=np.int64).ravel()
@@ -277,6 +279,7 @@ def _cover_model(cover: Cover) -> CoverModel:
         strokes=strokes,
         areas=areas,
         precedence=list(cover.precedence),
+        links=list(cover.links),
         start=cover.start,
         canvas=None if canvas is None else CanvasModel(width=canvas.width, height=canvas.height, margin=canvas.margin),
         notes=note_models(cover.notes),
@@ -301,7 +304,15 @@ def _cover_from(model: CoverModel) -> Cover:
     )
     areas = tuple(Area(a.element, tuple(map(_array, a.rings)), a.tool) for a in model.areas)
     canvas = None if model.canvas is None else Canvas(**model.canvas.model_dump())
-    return Cover(strokes, areas, tuple(model.precedence), model.start, canvas, notes_from(model.notes))
+    return Cover(
+        strokes,
+        areas,
+        tuple(model.precedence),
+        model.start,
+        canvas,
+        notes_from(model.notes),
+        tuple(model.links),
+    )
 
 
 def _ordering_model(ordering: Ordering) -> OrderingModel:

@@ -202,8 +202,8 @@ def test_forced_entries() -> None:
 def test_strokes_are_split_at_corners(points: np.ndarray, closed: bool, corner: float) -> None:
     options = Options(connect=op.ConnectOptions(corner))
     stroke = Stroke("s", points, closed=closed)
-    assert split_at_corners([stroke], RAKE, options, 0.05) == [stroke]
-    parts = split_at_corners([stroke], CAR, options, 0.05)
+    assert split_at_corners([stroke], RAKE, options, 0.05) == ([stroke], [0])
+    parts = split_at_corners([stroke], CAR, options, 0.05)[0]
     assert sum(part.length for part in parts) == pytest.approx(stroke.length)
     radius = least_radius(CAR, options)
     assert radius == 0.5

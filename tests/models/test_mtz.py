@@ -17,7 +17,8 @@ from optplan_models import highs
 from optplan_models.ordering import mtz
 from tests.ordering_cases import Case, cases, random_problem
 
-CASES = [case for case in cases() if math.isfinite(case.optimum)][::5]
+OPEN = (case for case in cases() if not case.problem.closed and not len(case.problem.enforced))
+CASES = [case for case in OPEN if math.isfinite(case.optimum)][::3]
 
 
 def model_of(problem: OrderingProblem) -> Any:
