@@ -25,8 +25,9 @@ CELL_WORK = 5
 """A place in a table takes as long as this many arcs."""
 PATIENCE, SHORTER = 3, 0.75
 """Steps without gain after which they are made shorter, and by how much."""
-FRESH_STEP = 0.1
-"""An ascent that is taken up again begins with steps at least this long: the best value known may be better now."""
+FRESH_STEP, LEAST_STEP = 0.1, 0.01
+"""An ascent that is taken up again begins with steps at least this long: the best value known may be better now. It ends
+when they are shorter than the other."""
 STEP, MOMENTUM = 0.25, 0.7
 SAFETY = 1e-12
 """Rounding errors of a bound, relative to the numbers summed up in it."""
@@ -101,6 +102,8 @@ class Relaxation:
                 self._stalled += 1
                 if self._stalled % PATIENCE == 0:
                     self._step *= SHORTER
+                if self._step < LEAST_STEP:
+                    return
             if math.isinf(bound):
                 return
             counts = np.zeros(self.problem.clusters, dtype=np.int64)
