@@ -34,6 +34,7 @@ class Hunt:
     relaxation: Relaxation
     goal: Cutoff
     direction: int = 0
+    floor: float = -math.inf
     polished: float = math.inf
 
     def sweep(self, direction: int, width: int) -> Sweep:
@@ -70,13 +71,13 @@ def beam_search(run: Run) -> StopReason:
     return widen(Hunt(run, Relaxation(run.problem), cutoff(run.problem)), most_states(run.problem))
 
 
-def widen(hunt: Hunt, widest: int) -> StopReason:
+def widen(hunt: Hunt, widest: int, width: int = FIRST_WIDTH) -> StopReason:
     """Sweeps of growing width up to the widest, the bound that guides them improved in between, until one proves.
 
-    Without a time limit it also ends after `MOST_STATES`. Leaves the better direction in the hunt.
+    Without a time limit it also ends after `MOST_STATES`. Leaves the better direction in the hunt, and the floor there.
     """
-    run = hunt.run
-    directions, width, total = [0, 1], FIRST_WIDTH, 0
+    run, total = hunt.run, 0
+    directions = [0, 1] if width < BOTH_WIDTH else [hunt.direction]
     while width <= widest and (total <= MOST_STATES or math.isfinite(run.rule.seconds)):
         began = run.clock.elapsed
         found = []
@@ -85,7 +86,8 @@ def widen(hunt: Hunt, widest: int) -> StopReason:
             if stop := found[-1].stopped:
                 return stop
         run.iterations += 1
-        hunt.direction = directions[int(np.argmax([sweep.floor for sweep in found]))]
+        better = int(np.argmax([sweep.floor for sweep in found]))
+        hunt.direction, hunt.floor = directions[better], found[better].floor
         if width >= BOTH_WIDTH:
             directions = [hunt.direction]
         states = sum(sweep.states for sweep in found)

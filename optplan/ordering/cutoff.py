@@ -11,7 +11,7 @@ from optplan.domain.ordering import OrderingProblem
 from optplan.ordering.arrays import dense_costs
 from optplan.ordering.method import Run
 
-TOLERANCE = 1e-9
+TOLERANCE = 1e-7
 """A path must be better by this, relatively, to be looked for: many paths cost the same but for rounding."""
 LARGEST_STEPS = 1e9
 """Costs beyond are not looked at for a step: their sums would not be exact."""

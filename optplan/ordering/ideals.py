@@ -1,11 +1,12 @@
-"""`dp`: the dynamic programme over order ideals, guided by a dual solution and pruned by its bound."""
+"""`dp`: the dynamic programme over order ideals, guided by the duals of a linear programme and pruned by its bound."""
 
 from __future__ import annotations
 
 from optplan.domain.ordering import OrderingProblem
-from optplan.domain.stop import StopReason
+from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering.beam import Hunt, widen
 from optplan.ordering.cutoff import cutoff
+from optplan.ordering.cutting.directed import root
 from optplan.ordering.ideals_bound import Relaxation, refuse_large_tables
 from optplan.ordering.ideals_layers import most_states
 from optplan.ordering.ideals_network import Reduced, closure
@@ -15,8 +16,10 @@ LOOSE_CLUSTERS = 60
 """Up to this many clusters the programme is tried without precedence: bounds leave few of the 2^m sets."""
 LEAST_DENSITY = 0.02
 """Share of the pairs of clusters that precedence orders; with less, more clusters are hopeless."""
-GUIDE_WIDTH = 2048
-"""Widest beam that looks for a path before all states are kept."""
+SCOUT_WIDTH = 2048
+"""Widest sweep before the linear programme: it finds a path, and many problems need no more."""
+ROOT_SHARE, ROOT_SECONDS = 0.5, 60.0
+"""Share of the time left for the linear programme, and its time when there is no limit."""
 
 
 def refuse_loose_precedence(problem: OrderingProblem) -> str | None:
@@ -33,23 +36,40 @@ def refuse_loose_precedence(problem: OrderingProblem) -> str | None:
 
 
 def prove_by_ideals(run: Run, reduced: Reduced | None = None) -> StopReason:
-    """Prove the optimum, or that there is none, as far as time and memory allow. One iteration is one sweep.
+    """Prove the optimum, or that there is none, as far as time and memory allow. One iteration is one width.
 
-    A narrow beam looks for a path and improves the bound; then all states are kept whose bound is below it. Where they
-    do not fit into memory the worst are dropped, and the least of their bounds is what is proved.
+    Narrow sweeps look for a path. Unless they prove it, a linear programme with cuts gives reduced costs. Then sweeps
+    guided by these, or by the costs themselves if that proves more, widen until all states are kept whose bound is
+    below the path's cost. Where they do not fit into memory the worst are dropped, and the least of their bounds is
+    what is proved.
 
     Parameters
     ----------
     run : perhaps with a known path
-    reduced : reduced costs that bound all paths, or at least those better than the known one; without them the costs
-        themselves
+    reduced : reduced costs that bound all paths better than the one known, instead of those of the linear programme
     """
-    hunt = Hunt(run, Relaxation(run.problem, reduced), cutoff(run.problem))
-    stop = widen(hunt, GUIDE_WIDTH)
-    if stop is not StopReason.FINISHED or hunt.goal.closed(run):
-        return stop
-    found = hunt.sweep(hunt.direction, most_states(run.problem))
-    run.iterations += 1
-    if not found.stopped:
-        run.message = f"the states did not fit into memory ({found.states} were kept)"
-    return found.stopped or StopReason.FINISHED
+    goal, widest = cutoff(run.problem), most_states(run.problem)
+    if reduced is None:
+        scout = Hunt(run, Relaxation(run.problem), goal)
+        stop = widen(scout, SCOUT_WIDTH)
+        if stop is not StopReason.FINISHED or goal.closed(run):
+            return stop
+        reduced = _duals(run)
+        goal.conclude(run, reduced.bound, scout.relaxation.rounding)
+        if goal.closed(run):
+            return StopReason.FINISHED
+        hunt = Hunt(run, Relaxation(run.problem, reduced), goal, scout.direction)
+        found = hunt.sweep(hunt.direction, SCOUT_WIDTH)
+        if found.stopped:
+            return found.stopped
+        # the duals bound the whole better, walks in places often what is left of it
+        return widen(hunt if found.floor > scout.floor else scout, widest, 2 * SCOUT_WIDTH)
+    return widen(Hunt(run, Relaxation(run.problem, reduced), goal), widest)
+
+
+def _duals(run: Run) -> Reduced:
+    """Reduced costs for paths that are better than the known one."""
+    seconds = max(1e-3, min(ROOT_SHARE * run.clock.remaining, ROOT_SECONDS))
+    clock = StopRule(seconds, cancelled=lambda: run.stop() is not None).start()
+    found = root(run.problem, run.cost, clock, run.nodes if len(run.nodes) else None)
+    return Reduced(found.bound, found.arcs, found.start, found.end)

@@ -26,8 +26,8 @@ CELL_WORK = 5
 PATIENCE, SHORTER = 3, 0.75
 """Steps without gain after which they are made shorter, and by how much."""
 FRESH_STEP, LEAST_STEP = 0.1, 0.01
-"""An ascent that is taken up again begins with steps at least this long: the best value known may be better now. It ends
-when they are shorter than the other."""
+"""An ascent that is taken up again begins with steps at least this long: the best value known may be better now; it
+ends when they are shorter than the other."""
 STEP, MOMENTUM = 0.25, 0.7
 SAFETY = 1e-12
 """Rounding errors of a bound, relative to the numbers summed up in it."""

@@ -198,10 +198,10 @@ def test_too_little_memory_still_bounds(monkeypatch: pytest.MonkeyPatch) -> None
     problem = ordered(14, 0.02, 5)
     best = solve(problem, "brute").cost
     monkeypatch.setattr(ideals_layers, "MEMORY", 50_000)
-    answer = solve(problem, "dp")
-    assert answer.bound <= best <= answer.cost
-    if answer.status is not Status.OPTIMAL:
-        assert "memory" in answer.message
+    for solver in ("dp", "beam"):
+        answer = solve(problem, solver)
+        assert answer.bound <= best <= answer.cost
+        assert answer.stopped is StopReason.FINISHED
 
 
 @NEW
@@ -250,7 +250,7 @@ def test_cutoff() -> None:
     goal, run = cutoff(lines), run_of(lines)
     assert goal.step == 0.0
     run.offer(np.array([0, 2, 4]))
-    goal.conclude(run, run.cost * (1 - 1e-6), 0.0)
+    goal.conclude(run, run.cost * (1 - 1e-5), 0.0)
     assert not goal.closed(run)
     goal.conclude(run, math.inf, 1e-12)
     assert goal.closed(run)
