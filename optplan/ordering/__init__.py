@@ -9,13 +9,20 @@ from optplan.domain.progress import ProgressCallback
 from optplan.domain.stop import StopRule
 from optplan.ordering.arrays import refuse_unknown_costs
 from optplan.ordering.auto import choose_and_solve
+from optplan.ordering.baselines.genetic import genetic, genetic_feasible
+from optplan.ordering.baselines.nearest import nearest_feasible_neighbour, nearest_neighbour_as_published
+from optplan.ordering.baselines.rows import refuse_rows, refuse_rows_split, rows, rows_split
+from optplan.ordering.baselines.shifted import noon_bean, refuse_precedence_or_many_cities
+from optplan.ordering.baselines.tree import kernel_first, refuse_no_forest
+from optplan.ordering.baselines.two_opt import two_opt
 from optplan.ordering.beam import beam_search
 from optplan.ordering.bounds import lower_bound
 from optplan.ordering.branch import branch_and_bound, refuse_many_nodes
-from optplan.ordering.exact import mtz_by_highs, refuse_many_arcs
+from optplan.ordering.exact import mtz_by_highs, plain_mtz_by_highs, refuse_many_arcs
 from optplan.ordering.ideals import prove_by_ideals, refuse_loose_precedence
 from optplan.ordering.ideals_bound import refuse_large_tables
-from optplan.ordering.local import local_search, nearest_neighbour
+from optplan.ordering.lkh import lkh, refuse_without_lkh
+from optplan.ordering.local import local_search
 from optplan.ordering.method import Method
 from optplan.ordering.subsets import refuse_many_subsets, subset_programme
 
@@ -23,10 +30,8 @@ __all__ = ["SOLVERS", "lower_bound", "solve"]
 
 _METHODS = (
     Method("auto", "proof where proof is cheap, else search and a bound", choose_and_solve, refuse_unknown_costs),
-    Method("nn", "nearest feasible neighbour, from several first strokes", nearest_neighbour, refuse_unknown_costs),
-    Method("2opt", "2-opt, or-opt and node choice, then perturbations: any-time", local_search, refuse_unknown_costs),
+    Method("local", "2-opt, or-opt and node choice, then perturbations: any-time", local_search, refuse_unknown_costs),
     Method("brute", "dynamic programming over subsets: proves small problems", subset_programme, refuse_many_subsets),
-    Method("exact", "mixed-integer model (MTZ) by HiGHS: proves, or gives a bound", mtz_by_highs, refuse_many_arcs),
     Method("bnb", "depth-first branch and bound: proves a dozen strokes", branch_and_bound, refuse_many_nodes),
     Method(
         "beam", "beam search over order ideals: any-time, proves dense precedence", beam_search, refuse_large_tables
@@ -34,6 +39,20 @@ _METHODS = (
     Method(
         "dp", "dynamic programme over order ideals: proves dense precedence", prove_by_ideals, refuse_loose_precedence
     ),
+    Method(
+        "mtz-lifted", "mixed-integer model (MTZ, lifted) by HiGHS: proves, or bounds", mtz_by_highs, refuse_many_arcs
+    ),
+    Method("mtz", "mixed-integer model (MTZ) as published, by HiGHS", plain_mtz_by_highs, refuse_many_arcs),
+    Method("noon-bean", "as a travelling-salesman problem, solved by MTZ", noon_bean, refuse_precedence_or_many_cities),
+    Method("rows", "circles of a facade strictly row by row, by MTZ", rows, refuse_rows),
+    Method("rows-split", "the same, rows cut where precedence changes", rows_split, refuse_rows_split),
+    Method("nn", "nearest neighbour as published: no precedence", nearest_neighbour_as_published, closed=True),
+    Method("nn-feasible", "nearest feasible neighbour, ties downwards", nearest_feasible_neighbour, closed=True),
+    Method("2opt", "nearest neighbour and 2-opt as published: no precedence", two_opt, closed=True),
+    Method("tree", "what lies inside a stroke first, then the nearest", kernel_first, refuse_no_forest, closed=True),
+    Method("ga", "genetic algorithm as published: no precedence", genetic, refuse_unknown_costs, closed=True),
+    Method("ga-feasible", "genetic algorithm, repaired", genetic_feasible, refuse_unknown_costs, closed=True),
+    Method("lkh", "the program LKH, where it is installed", lkh, refuse_without_lkh),
 )
 
 SOLVERS: dict[str, Solver] = {method.name: method for method in _METHODS}

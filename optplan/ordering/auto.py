@@ -30,7 +30,7 @@ def choose_and_solve(run: Run) -> StopReason:
         if run.bound > -math.inf or stop is not StopReason.TIME:
             return stop
     provable = problem.clusters <= EXACT_CLUSTERS and arc_count(problem) <= MAX_ARCS and run.rule.iterations is None
-    run.message = f"2opt with a bound: {problem.clusters} clusters are too many to prove the optimum"
+    run.message = f"local with a bound: {problem.clusters} clusters are too many to prove the optimum"
     share = 0.2 if provable else SEARCH_SHARE
     part = run.within(share * run.clock.remaining, run.rule.iterations)
     stop = local_search(part)
@@ -45,7 +45,7 @@ def choose_and_solve(run: Run) -> StopReason:
         if math.isfinite(run.rule.seconds) and not _closed(run):
             return _use_the_rest(run)
         return run.stop() or StopReason.FINISHED
-    run.message = f"2opt, then exact: {problem.clusters} clusters may be few enough to prove the optimum"
+    run.message = f"local, then mtz-lifted: {problem.clusters} clusters may be few enough to prove the optimum"
     limited = math.isinf(run.rule.seconds)
     part = run.within(EXACT_SECONDS if limited else run.clock.remaining)
     part.nodes, part.cost = run.nodes, run.cost

@@ -1,4 +1,4 @@
-"""`exact`: the Pyomo model with positions (MTZ), solved by HiGHS in a child process."""
+"""`mtz-lifted` and `mtz`: the Pyomo model with positions (MTZ), solved by HiGHS in a child process."""
 
 from __future__ import annotations
 
@@ -45,8 +45,13 @@ def mtz_by_highs(run: Run) -> StopReason:
     return prove_by_highs(run)
 
 
-def prove_by_highs(run: Run) -> StopReason:
-    """Let HiGHS improve and prove what the run has found so far."""
+def plain_mtz_by_highs(run: Run) -> StopReason:
+    """The model as published, without a start or a bound from elsewhere. There are no iterations."""
+    return prove_by_highs(run, lifted=False)
+
+
+def prove_by_highs(run: Run, *, lifted: bool = True) -> StopReason:
+    """Let HiGHS improve and prove what the run has found so far, by the lifted model or the published one."""
     from optplan_models import highs
     from optplan_models.ordering import mtz
 
@@ -58,6 +63,7 @@ def prove_by_highs(run: Run) -> StopReason:
         problem.end_costs,
         problem.node_costs,
         problem.precedence,
+        lifted=lifted,
     )
     start = None
     if len(run.nodes):

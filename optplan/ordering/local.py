@@ -1,4 +1,4 @@
-"""`nn` and `2opt`: a path by nearest neighbours, and its improvement by local search."""
+"""`local`: a path by nearest neighbours, and its improvement by local search."""
 
 from __future__ import annotations
 

@@ -17,7 +17,9 @@ from optplan.domain.ordering import EuclidCosts, MatrixCosts, OrderingProblem, S
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering._kernels.maxflow import SINK_SIDE, SOURCE_SIDE, max_flow, network
 from optplan.ordering.cutting.directed import Root, directed_bound, root, solve_directed
-from optplan.ordering.cutting.directed_graph import takes_closed
+from optplan.ordering.cutting.directed_graph import rooted_tour, takes_closed
+from optplan.ordering.cutting.directed_root import CutLoop
+from optplan.ordering.cutting.lp import Solution
 from optplan.ordering.method import Method
 from optplan.ordering.tsplib import read_tsplib
 from tests.ordering_cases import Case, cases, random_problem
@@ -97,6 +99,21 @@ def test_the_root_holds_for_every_solution(seed: int, closed: bool) -> None:
         if cost < incumbent - slack:
             assert cost >= reduced_cost(limited, problem, nodes) - 1e-9
     assert directed_bound(problem) <= min(costs, default=math.inf) + 1e-9
+
+
+def test_a_probe_never_promises_too_much() -> None:
+    problem = random_problem("matrix", 12, 2, precedence=True, start=False, end=False)
+    loop = CutLoop(rooted_tour(problem), lambda: False)
+    loop.start()
+    loop.run()
+    inner = loop.programme.programme
+    one = np.array([int(np.argmax(loop.programme.primal < 0.5))])
+    inner.set_bounds(one, np.ones(1), np.ones(1))
+    estimates = [inner.probe(iterations) for iterations in (1, 1000)]
+    solved = inner.solve()
+    exact = solved.objective if isinstance(solved, Solution) else math.inf
+    assert estimates[0] <= exact + 1e-6
+    assert estimates[1] == pytest.approx(exact)
 
 
 def test_cancel_is_heard_and_the_best_so_far_kept() -> None:

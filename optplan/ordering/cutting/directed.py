@@ -152,8 +152,14 @@ def solve_directed(run: Run) -> StopReason:
     search(run.nodes if len(run.nodes) else None, FIRST_ITERATIONS)
     loop.start()
     state = loop.run()
+    finished = state == "proved"
     if state == "done":
         improve()
         loop.shrink()
-        Tree(loop, improve).run()
-    return run.stop() or StopReason.FINISHED
+        finished = Tree(loop, improve).run()
+    if stop := run.stop():
+        return stop
+    if not finished:
+        run.message = "HiGHS could not solve a linear programme of the cut loop"
+        return StopReason.FAILED
+    return StopReason.FINISHED

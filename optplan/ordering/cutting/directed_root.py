@@ -19,10 +19,10 @@ CUTS = 100
 """Most cuts added in a round."""
 AGE = 5
 """Solves after which a slack cut is dropped."""
-PATIENCE = 12
+PATIENCE = 8
 """Rounds without progress after which the loop ends."""
-PROGRESS = 1e-5
-"""Relative rise of the bound that counts as progress."""
+PROGRESS = 0.01
+"""Share of the gap that has to be closed to count as progress."""
 EQUAL = 1e-7
 """Costs that differ relatively by less are equal."""
 
@@ -115,9 +115,9 @@ class CutLoop:
         # without a known tour a part of the arcs could hold none, and the first programme be infeasible
         self._include(*np.nonzero(pick))
 
-    def run(self, *, deep: bool = True) -> str:
+    def run(self) -> str:
         """Raise the bound until nothing is violated ("done"), it is proved ("proved"), or "ended"."""
-        stale, deepest = 0, not deep
+        stale, reached = 0, -math.inf
         while not self.ended():
             status = self.programme.solve(self.ended)
             if status == "Infeasible":
@@ -127,19 +127,17 @@ class CutLoop:
                 return "proved"
             if status != "Optimal":
                 return "ended"
-            before = self.bound
             added = self.price()
             if self.closed:
                 return "proved"
             lp = self.programme
-            stale = 0 if self.bound > before + PROGRESS * abs(self.bound) else stale + 1
-            marks = self.separator.violated(lp.tails, lp.heads, lp.primal, CUTS, deep=stale > 0 or deepest)
-            if not added and not len(marks):
-                if stale > 0 or deepest:
-                    return "done"
-                deepest = True
-                continue
-            if stale > PATIENCE:
+            gap = self.cutoff - self.base if math.isfinite(self.cutoff) else abs(self.base)
+            if self.base > reached + PROGRESS * gap:
+                stale, reached = 0, self.base
+            else:
+                stale += 1
+            marks = self.separator.violated(lp.tails, lp.heads, lp.primal, CUTS, deep=stale > 0)
+            if (stale and not added and not len(marks)) or stale > PATIENCE:
                 return "done"
             lp.purge(AGE)
             lp.add_cuts(marks)

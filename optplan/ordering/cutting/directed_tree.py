@@ -44,12 +44,14 @@ class Tree:
     ----------
     loop : the root with its cuts and incumbent
     improve : looks at the last fractional point, and may teach the loop better tours
+    least : no tour of the subproblems that ended with one costs less
     """
 
     loop: CutLoop
     improve: Callable[[], None]
     open: list[Branch] = field(default_factory=list)
     brancher: Brancher = field(init=False)
+    least: float = math.inf
 
     def __post_init__(self) -> None:
         self.brancher = Brancher(self.loop.programme)
@@ -60,7 +62,7 @@ class Tree:
         branch: Branch | None = Branch(loop.bound, 0)
         while branch or self.open:
             branch = branch or heapq.heappop(self.open)
-            loop.prove(min([branch.bound, *(b.bound for b in self.open[:1])]))
+            loop.prove(min([branch.bound, self.least, *(b.bound for b in self.open[:1])]))
             known = loop.upper
             children = None if loop.ended() else self._work(branch)
             if children is None:
@@ -75,7 +77,7 @@ class Tree:
             for child in children[1:]:
                 heapq.heappush(self.open, child)
         # there is nothing below the cut-off, and whole costs leave no room above it
-        loop.prove(loop.upper if loop.grain else loop.cutoff)
+        loop.prove(min(self.least, loop.upper if loop.grain else loop.cutoff))
         return True
 
     def _tighten(self) -> None:
@@ -92,7 +94,7 @@ class Tree:
         lp = loop.programme
         out = self._out(branch)
         bound, rounds = branch.bound, 0
-        while True:
+        while not loop.ended():
             self._fix(branch, out)
             status = lp.solve(loop.ended)
             if status == "Infeasible":
@@ -119,12 +121,13 @@ class Tree:
                     lp.purge(AGE)
                     lp.add_cuts(marks)
             if not added and not cuts:
-                break
+                if not whole:
+                    return self._split(branch, bound)
+                loop.learn(self._tour_of(x))
+                self.least = min(self.least, bound)
+                return []
             rounds += 1
-        if whole:
-            loop.learn(self._tour_of(x))
-            return []
-        return self._split(branch, bound)
+        return None
 
     def _out(self, branch: Branch) -> Bools:
         """(n, n) arcs that the subproblem does not have."""
