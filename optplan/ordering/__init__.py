@@ -15,9 +15,14 @@ from optplan.ordering.baselines.rows import refuse_rows, refuse_rows_split, rows
 from optplan.ordering.baselines.shifted import noon_bean, refuse_precedence_or_many_cities
 from optplan.ordering.baselines.tree import kernel_first, refuse_no_forest
 from optplan.ordering.baselines.two_opt import two_opt
+from optplan.ordering.beam import beam_search
 from optplan.ordering.bounds import lower_bound
+from optplan.ordering.branch import branch_and_bound
+from optplan.ordering.branch import refuse_many_nodes as refuse_large_trees
 from optplan.ordering.cutting.directed import refuse_many_nodes, solve_directed
 from optplan.ordering.exact import flow_by_highs, mtz_by_highs, plain_mtz_by_highs, refuse_many_arcs
+from optplan.ordering.ideals import prove_by_ideals, refuse_loose_precedence
+from optplan.ordering.ideals_bound import refuse_large_tables
 from optplan.ordering.lkh import lkh, refuse_without_lkh
 from optplan.ordering.local import local_search
 from optplan.ordering.method import Method
@@ -38,6 +43,9 @@ _METHODS = (
         "local", "2-opt, or-opt and node choice, then perturbations", local_search, refuse_unknown_costs, improves=True
     ),
     Method("cuts", "cutting planes, then branch and cut", solve_directed, refuse_many_nodes, closed=True, proves=True),
+    Method("dp", "dynamic programme over order ideals", prove_by_ideals, refuse_loose_precedence, proves=True),
+    Method("beam", "beam search over order ideals", beam_search, refuse_large_tables, proves=True, improves=True),
+    Method("bnb", "depth-first branch and bound, as published", branch_and_bound, refuse_large_trees, proves=True),
     Method("brute", "dynamic programming over all subsets", subset_programme, refuse_many_subsets, proves=True),
     Method("mtz-lifted", "mixed-integer model: positions, lifted", mtz_by_highs, refuse_many_arcs, proves=True),
     Method("mtz", "the same as published", plain_mtz_by_highs, refuse_many_arcs, proves=True),

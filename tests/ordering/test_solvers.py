@@ -17,7 +17,7 @@ from tests.ordering_cases import Case, cases, optimum, optimum_by_product, rando
 CASES = list(cases())
 MODELS = {"mtz-lifted", "mtz", "flow", "noon-bean"}
 """Solvers that hand a mixed-integer model to a child process, so that every problem takes a while."""
-PROVES = {"brute", "auto", "cuts"} | MODELS
+PROVES = {"brute", "auto", "cuts", "bnb", "beam", "dp"} | MODELS
 SEARCHES = {"local", "nn", "nn-feasible", "2opt", "tree", "ga", "ga-feasible"}
 ANYTIME = {"local", "ga", "ga-feasible"}
 """Searches that go on for as long as they may."""
