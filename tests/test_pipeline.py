@@ -15,7 +15,7 @@ DRAWINGS = [name for name in op.instance_names() if name.startswith("drawings/")
 
 
 def _plan(name: str, robot: str = "beach-rake", **order: object) -> op.Plan:
-    options = op.Options(order=op.OrderOptions(solver="2opt", iterations=50, **order))  # type: ignore[arg-type]
+    options = op.Options(order=op.OrderOptions(solver="search", iterations=50, **order))  # type: ignore[arg-type]
     return op.plan(op.read(op.instance(name)), robot, options)
 
 

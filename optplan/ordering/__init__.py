@@ -24,8 +24,8 @@ from optplan.ordering.exact import flow_by_highs, mtz_by_highs, plain_mtz_by_hig
 from optplan.ordering.ideals import prove_by_ideals, refuse_loose_precedence
 from optplan.ordering.ideals_bound import refuse_large_tables
 from optplan.ordering.lkh import lkh, refuse_without_lkh
-from optplan.ordering.local import local_search
 from optplan.ordering.method import Method
+from optplan.ordering.search import search
 from optplan.ordering.subsets import refuse_many_subsets, subset_programme
 
 __all__ = ["SOLVERS", "lower_bound", "solve"]
@@ -40,7 +40,12 @@ _METHODS = (
         improves=True,
     ),
     Method(
-        "local", "2-opt, or-opt and node choice, then perturbations", local_search, refuse_unknown_costs, improves=True
+        "search",
+        "exchanges, ruin and recreate, annealed",
+        search,
+        refuse_unknown_costs,
+        closed=True,
+        improves=True,
     ),
     Method("cuts", "cutting planes, then branch and cut", solve_directed, refuse_many_nodes, closed=True, proves=True),
     Method("dp", "dynamic programme over order ideals", prove_by_ideals, refuse_loose_precedence, proves=True),

@@ -7,18 +7,16 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import numpy as np
 
 from optplan.domain.arrays import FloatArray, IntArray
-from optplan.domain.ordering import DubinsCosts, EuclidCosts, MatrixCosts, OrderingProblem
-from optplan.ordering.near import nearest_clusters
+from optplan.domain.costs import DubinsCosts, EuclidCosts, MatrixCosts
+from optplan.domain.ordering import OrderingProblem
 
 if TYPE_CHECKING:
     from optplan.ordering._kernels.costs import Costs, Structure
 
 DENSE_NODES = 3000
 """Costs of a kind unknown to the kernels are written out up to this many nodes (72 MB)."""
-DENSE_DUBINS = 700
-"""Dubins paths are computed once and kept up to this many nodes (4 MB, 0.2 s)."""
-NEIGHBOURS = 10
-"""Neighbouring clusters a search looks at."""
+DENSE_DUBINS = 1000
+"""Dubins paths are computed once and kept up to this many nodes (8 MB, 0.4 s)."""
 _Array = TypeVar("_Array", bound=np.ndarray[Any, Any])
 
 
@@ -61,26 +59,20 @@ def kernel_costs(problem: OrderingProblem) -> Costs:
     penalty = (largest + 1.0) * (problem.clusters + 1) * 2
     if kind == 0 and np.isinf(data).any():
         data = np.where(np.isinf(data), penalty, data)
-    return Costs(kind, radius, _fixed(data), _fixed(np.where(np.isinf(ends), penalty, ends)))
+    return Costs(kind, radius, fixed(data), fixed(np.where(np.isinf(ends), penalty, ends)))
 
 
-def kernel_structure(problem: OrderingProblem, *, neighbours: int = NEIGHBOURS) -> Structure:
-    """Clusters, partners, neighbours and precedence for the kernels; no neighbours are looked for when 0."""
+def kernel_structure(problem: OrderingProblem) -> Structure:
+    """Clusters and precedence for the kernels."""
     from optplan.ordering._kernels.costs import Structure
 
     count = problem.clusters
-    near, distance = np.zeros((count, 0), dtype=np.int64), np.zeros((count, 0))
-    if neighbours:
-        near, distance = nearest_clusters(problem, neighbours)
     pairs = np.unique(problem.precedence, axis=0).reshape(-1, 2)
     return Structure(
-        _fixed(problem.cluster),
-        _fixed(problem.first_node.astype(np.int64)),
-        _fixed(partners(problem)),
-        _fixed(near),
-        _fixed(distance),
-        _fixed(_grouped(pairs[:, 1], pairs[:, 0], count)),
-        _fixed(_grouped(pairs[:, 0], pairs[:, 1], count)),
+        fixed(problem.cluster),
+        fixed(problem.first_node.astype(np.int64)),
+        fixed(grouped(pairs[:, 1], pairs[:, 0], count)),
+        fixed(grouped(pairs[:, 0], pairs[:, 1], count)),
     )
 
 
@@ -129,14 +121,14 @@ def _rounded(states: FloatArray, costs: EuclidCosts | DubinsCosts) -> FloatArray
     return np.column_stack([states[:, :2], heading]) + 0.0
 
 
-def _grouped(keys: IntArray, values: IntArray, count: int) -> IntArray:
+def grouped(keys: IntArray, values: IntArray, count: int) -> IntArray:
     """One array in which the values of key c are at places array[c]..array[c + 1]-1."""
     order = np.argsort(keys, kind="stable")
     ranges = np.searchsorted(keys[order], np.arange(count + 1)) + count + 1
     return np.concatenate([ranges, values[order]]).astype(np.int64)
 
 
-def _fixed(values: _Array) -> _Array:
+def fixed(values: _Array) -> _Array:
     """The array read-only and contiguous: numba compiles one signature."""
     fixed = np.ascontiguousarray(values).view()
     fixed.setflags(write=False)

@@ -7,8 +7,8 @@ import math
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering.bounds import lower_bound
 from optplan.ordering.exact import MAX_ARCS, arc_count, prove_by_highs
-from optplan.ordering.local import local_search
 from optplan.ordering.method import OPTIMAL_GAP, Run
+from optplan.ordering.search import search
 from optplan.ordering.subsets import MAX_WORK, subset_programme, transitions
 
 BRUTE_SPEED = 3e8
@@ -30,10 +30,10 @@ def choose_and_solve(run: Run) -> StopReason:
         if run.bound > -math.inf or stop is not StopReason.TIME:
             return stop
     provable = problem.clusters <= EXACT_CLUSTERS and arc_count(problem) <= MAX_ARCS and run.rule.iterations is None
-    run.message = f"local with a bound: {problem.clusters} clusters are too many to prove the optimum"
+    run.message = f"search with a bound: {problem.clusters} clusters are too many to prove the optimum"
     share = 0.2 if provable else SEARCH_SHARE
     part = run.within(share * run.clock.remaining, run.rule.iterations)
-    stop = local_search(part)
+    stop = search(part)
     run.adopt(part)
     if stop is StopReason.CANCELLED:
         return stop
@@ -45,7 +45,7 @@ def choose_and_solve(run: Run) -> StopReason:
         if math.isfinite(run.rule.seconds) and not _closed(run):
             return _use_the_rest(run)
         return run.stop() or StopReason.FINISHED
-    run.message = f"local, then mtz-lifted: {problem.clusters} clusters may be few enough to prove the optimum"
+    run.message = f"search, then mtz-lifted: {problem.clusters} clusters may be few enough to prove the optimum"
     limited = math.isinf(run.rule.seconds)
     part = run.within(EXACT_SECONDS if limited else run.clock.remaining)
     part.nodes, part.cost = run.nodes, run.cost
@@ -70,6 +70,6 @@ def _use_the_rest(run: Run) -> StopReason:
         return stop
     part = run.within(run.clock.remaining)
     part.seed += 1
-    stop = local_search(part)
+    stop = search(part)
     run.adopt(part)
     return run.stop() or stop

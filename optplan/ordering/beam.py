@@ -11,8 +11,8 @@ from optplan.domain.stop import StopReason
 from optplan.ordering.cutoff import Cutoff, cutoff
 from optplan.ordering.ideals_bound import Relaxation
 from optplan.ordering.ideals_layers import Sweep, most_states, sweep
-from optplan.ordering.local import local_search
 from optplan.ordering.method import Run
+from optplan.ordering.search import search
 
 FIRST_WIDTH = 32
 GROWTH = 4
@@ -24,6 +24,8 @@ ROUNDS = (20, 100)
 """Fewest and most steps of the ascent between two widths."""
 STATE_WORK = 100
 """A state takes as long as this many arcs in the ascent."""
+POLISH_EACH = 20
+"""Iterations a cluster of the search from each better path."""
 
 
 @dataclass
@@ -60,8 +62,9 @@ class Hunt:
     def polish(self) -> None:
         """Take the best path to a local optimum."""
         if self.run.cost < self.polished:
-            part = self.run.within(math.inf, 0)
-            local_search(part)
+            part = self.run.within(math.inf, POLISH_EACH * self.run.problem.clusters)
+            search(part)
+            part.iterations = 0
             self.run.adopt(part)
             self.polished = self.run.cost
 

@@ -13,8 +13,8 @@ from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering.arrays import dense_costs
 from optplan.ordering.bounds import lower_bound
-from optplan.ordering.local import local_search
 from optplan.ordering.method import Run
+from optplan.ordering.search import search
 
 MAX_ARCS = 30_000
 """Most arcs between nodes of different clusters: beyond, not even the root is solved in a minute."""
@@ -40,7 +40,7 @@ def refuse_many_arcs(problem: OrderingProblem) -> str | None:
 def mtz_by_highs(run: Run) -> StopReason:
     """Prove the optimum, or give incumbent and bound. Iterations are those of the search for a start."""
     warm = run.within(WARM_SHARE * run.clock.remaining, _fewer(run.rule.iterations, WARM_ITERATIONS))
-    stopped = local_search(warm)
+    stopped = search(warm)
     run.adopt(warm)
     if stopped in (StopReason.CANCELLED, StopReason.TARGET):
         return stopped

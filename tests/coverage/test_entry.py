@@ -20,7 +20,7 @@ def _cover(entry: dict[str, int] | None = None) -> op.Plan:
     assert isinstance(job, op.Drawing)
     for id, vertex in (entry or {}).items():
         job = job.with_element(id, entry=vertex)
-    return op.plan(job, "beach-rake", op.Options(order=op.OrderOptions(solver="2opt", iterations=5)))
+    return op.plan(job, "beach-rake", op.Options(order=op.OrderOptions(solver="search", iterations=5)))
 
 
 def test_closed_strokes_run_counter_clockwise_and_holes_clockwise() -> None:

@@ -18,8 +18,8 @@ CASES = list(cases())
 MODELS = {"mtz-lifted", "mtz", "flow", "noon-bean"}
 """Solvers that hand a mixed-integer model to a child process, so that every problem takes a while."""
 PROVES = {"brute", "auto", "cuts", "bnb", "beam", "dp"} | MODELS
-SEARCHES = {"local", "nn", "nn-feasible", "2opt", "tree", "ga", "ga-feasible"}
-ANYTIME = {"local", "ga", "ga-feasible"}
+SEARCHES = {"search", "nn", "nn-feasible", "2opt", "tree", "ga", "ga-feasible"}
+ANYTIME = {"search", "ga", "ga-feasible"}
 """Searches that go on for as long as they may."""
 NEEDS_FOREST = {"tree"}
 """Solvers that refuse precedence which is no containment."""
@@ -98,7 +98,7 @@ def test_the_model_brackets_the_optimum(solver: str, case: Case) -> None:
 
 def test_local_search_finds_most_optima() -> None:
     reached = [
-        solve(case.problem, "local", StopRule(iterations=300)).cost <= case.optimum + TOLERANCE
+        solve(case.problem, "search", StopRule(iterations=300)).cost <= case.optimum + TOLERANCE
         for case in CASES
         if math.isfinite(case.optimum)
     ]
@@ -209,18 +209,18 @@ def test_progress_improves(solver: str) -> None:
 
 def test_iterations_are_counted() -> None:
     for limit in (0, 1, 17):
-        assert solve(strokes(30), "local", StopRule(iterations=limit)).iterations == limit
-    assert solve(strokes(30), "local", StopRule(iterations=0)).cost <= solve(strokes(30), "nn").cost
+        assert solve(strokes(30), "search", StopRule(iterations=limit)).iterations == limit
+    assert solve(strokes(30), "search", StopRule(iterations=0)).cost <= solve(strokes(30), "nn").cost
 
 
 def test_time_limit() -> None:
-    answer = solve(strokes(60), "local", StopRule(seconds=0.3))
+    answer = solve(strokes(60), "search", StopRule(seconds=0.3))
     assert answer.stopped is StopReason.TIME
     assert answer.seconds < 20
     automatic = solve(strokes(60), "auto", StopRule(seconds=1.0))
     assert automatic.status is Status.FEASIBLE
     assert 0 < automatic.bound < automatic.cost
-    assert "local" in automatic.message
+    assert "search" in automatic.message
 
 
 def test_refusals_say_why() -> None:
@@ -234,7 +234,7 @@ def test_refusals_say_why() -> None:
 
 
 def test_unknown_name_lists_the_known() -> None:
-    with pytest.raises(InputError, match="2opt") as caught:
+    with pytest.raises(InputError, match="search") as caught:
         solve(strokes(3), "best")
     assert all(name in str(caught.value) for name in SOLVERS)
 
@@ -244,7 +244,7 @@ def test_precedence_survives_a_long_search() -> None:
     pairs = [(int(a), int(b)) for a in range(60) for b in range(a + 1, 60) if rng.random() < 0.05]
     problem = strokes(60)
     problem = OrderingProblem(problem.cluster, problem.costs, precedence=np.array(pairs))
-    answer = solve(problem, "local", StopRule(iterations=2000))
+    answer = solve(problem, "search", StopRule(iterations=2000))
     assert problem.faults(answer.nodes) == []
     assert answer.cost < 0.9 * solve(problem, "nn-feasible").cost
 

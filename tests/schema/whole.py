@@ -61,7 +61,7 @@ def jobs() -> dict[str, Job]:
 OPTIONS = Options(
     PageOptions(30.0, 20.0, THIRD, 0.01),
     CoverOptions(0.1 + 0.2, 0.3, 0.2, False, (("a", FillSettings(THIRD, None, 0.1)), ("b", FillSettings()))),
-    OrderOptions("2opt", "euclid", 2.5, 100, 7, (1.5, -THIRD), 12),
+    OrderOptions("search", "euclid", 2.5, 100, 7, (1.5, -THIRD), 12),
     ConnectOptions(math.radians(33.3)),
     TimeOptions(0.3, THIRD),
 )
@@ -78,7 +78,7 @@ def plan() -> Plan:
     cover = Cover(strokes, areas, ((0, 1), (0, 2)), (0.5, THIRD), Canvas(20.0, 10.0, 0.5), NOTES)
     trace = (TracePoint(0.1, math.inf, -math.inf), TracePoint(0.2, 9.0, 3.0))
     ordering = Ordering(
-        np.array([0, 3]), 9.0, 3.0, Status.FEASIBLE, StopReason.TIME, "2opt", 7, 2.5, 100, "because", trace
+        np.array([0, 3]), 9.0, 3.0, Status.FEASIBLE, StopReason.TIME, "search", 7, 2.5, 100, "because", trace
     )
     states = np.arange(15.0).reshape(3, 5) / 7
     visits = Traversals(

@@ -5,77 +5,130 @@ from __future__ import annotations
 import math
 
 from optplan.compiled import njit
-from optplan.ordering._kernels.costs import Costs, Structure, arc, link
-from optplan.ordering._kernels.path import EFFORT, Path, Work, at, push, refresh
+from optplan.ordering._kernels.tour import (
+    ACTIVE,
+    DISTANT,
+    GAIN,
+    ITERATION,
+    NEXT,
+    NODE,
+    NOW,
+    PREVIOUS,
+    SMALLEST,
+    WORK,
+    Graph,
+    State,
+    arc,
+    push,
+    touch,
+)
 
-WINDOW_WORK = 3000
-"""Arc costs that choosing three consecutive nodes together may take; else one node at a time."""
+LONGEST = 200
+"""Most clusters whose nodes are chosen together around a change."""
 
 
 @njit(cache=True, nogil=True)
-def layer(costs: Costs, structure: Structure, path: Path, work: Work, low: int, p: int) -> int:
-    """One step of the dynamic programme over node choices from place low on: the values at place p. Work done."""
-    first = structure.first
-    c = structure.cluster[path.nodes[p]]
-    if p == low:
-        before = at(path.nodes, low - 1)
+def _layers(graph: Graph, state: State, low: int, high: int, left: int, right: int) -> tuple[float, int]:
+    """The least cost of the clusters low..high between nodes left and right, and the node of the last; fills parent."""
+    rows, first, value, parent = state.rows, graph.first, state.value, state.parent
+    data, radius, distant = graph.data, graph.radius, graph.flags[DISTANT]
+    for k in range(first[low], first[low + 1]):
+        value[k] = arc(distant, radius, data, left, k)
+    b = low
+    while b != high:
+        c = rows[b, NEXT]
         for k in range(first[c], first[c + 1]):
-            work.value[k] = link(costs, before, k) + costs.ends[2, k]
-        return int(first[c + 1] - first[c])
-    b = structure.cluster[path.nodes[p - 1]]
-    for k in range(first[c], first[c + 1]):
-        best, origin = math.inf, first[b]
-        for h in range(first[b], first[b + 1]):
-            cost = work.value[h] + arc(costs, h, k)
-            if cost < best:
-                best, origin = cost, h
-        work.value[k] = best + costs.ends[2, k]
-        work.parent[k] = origin
-    return int((first[c + 1] - first[c]) * (first[b + 1] - first[b]))
-
-
-@njit(cache=True, nogil=True)
-def settle(costs: Costs, structure: Structure, path: Path, work: Work, low: int, high: int) -> bool:
-    """After `layer` for low..high: take over the choices if they are better than the present ones."""
-    first = structure.first
-    after = at(path.nodes, high + 1)
-    c = structure.cluster[path.nodes[high]]
+            best, origin = math.inf, first[b]
+            for h in range(first[b], first[b + 1]):
+                cost = value[h] + arc(distant, radius, data, h, k)
+                if cost < best:
+                    best, origin = cost, h
+            value[k], parent[k] = best, origin
+        state.counts[WORK] += 1
+        b = c
     best, chosen = math.inf, -1
-    for k in range(first[c], first[c + 1]):
-        cost = work.value[k] + link(costs, k, after)
+    for k in range(first[high], first[high + 1]):
+        cost = value[k] + arc(distant, radius, data, k, right)
         if cost < best:
             best, chosen = cost, k
-    now = link(costs, at(path.nodes, low - 1), path.nodes[low]) + link(costs, path.nodes[high], after)
-    now += costs.ends[2, path.nodes[low]]
-    for p in range(low + 1, high + 1):
-        now += path.sums[0, p]
-    if best >= now - work.cost[2]:
-        return False
-    for p in range(high, low - 1, -1):
-        path.nodes[p] = chosen
-        if p > low:
-            chosen = work.parent[chosen]
-    return True
+    return best, chosen
 
 
 @njit(cache=True, nogil=True)
-def choose_nodes(costs: Costs, structure: Structure, path: Path, work: Work, p: int) -> bool:
-    """Choose the node at place p anew, together with its neighbours' where that is cheap."""
-    low, high = max(0, p - 1), min(len(path.nodes) - 1, p + 1)
-    first = structure.first
-    expected = 0
-    for q in range(low + 1, high + 1):
-        a, b = structure.cluster[path.nodes[q - 1]], structure.cluster[path.nodes[q]]
-        expected += (first[a + 1] - first[a]) * (first[b + 1] - first[b])
-    if expected > WINDOW_WORK:
-        low = high = p
-    elif expected <= high - low:
+def _settle(state: State, low: int, high: int, chosen: int) -> None:
+    """Take over the nodes of low..high that lead to the last of them."""
+    rows = state.rows
+    c = high
+    while True:
+        if rows[c, NODE] != chosen:
+            touch(state, c)
+            rows[c, NODE] = chosen
+        if c == low:
+            return
+        chosen, c = state.parent[chosen], rows[c, PREVIOUS]
+
+
+@njit(cache=True, nogil=True)
+def _choose(graph: Graph, state: State, low: int, high: int) -> None:
+    """Choose the nodes of the clusters low..high anew, between the present nodes of the clusters around them."""
+    rows, data, radius, distant = state.rows, graph.data, graph.radius, graph.flags[DISTANT]
+    b, right = rows[low, PREVIOUS], rows[rows[high, NEXT], NODE]
+    left = rows[b, NODE]
+    now = arc(distant, radius, data, rows[high, NODE], right)
+    c = low
+    while b != high:
+        now += arc(distant, radius, data, rows[b, NODE], rows[c, NODE])
+        b, c = c, rows[c, NEXT]
+    best, chosen = _layers(graph, state, low, high, left, right)
+    if best < now - state.cost[GAIN]:
+        state.cost[NOW] += best - now
+        _settle(state, low, high, chosen)
+
+
+@njit(cache=True, nogil=True)
+def choose_around(graph: Graph, state: State) -> None:
+    """Choose the nodes of all clusters anew that are active in this iteration, and of their neighbours."""
+    rows, marks, lists, count = state.rows, state.marks, state.lists, state.counts
+    longest = min(len(rows) - 1, LONGEST)
+    for a in range(count[ACTIVE]):
+        low = lists[ACTIVE, a]
+        if marks[ACTIVE, low] != count[ITERATION]:
+            continue
+        high, width = low, 1
+        marks[ACTIVE, low] = -1
+        while width < longest and marks[ACTIVE, rows[low, PREVIOUS]] == count[ITERATION]:
+            low, width = rows[low, PREVIOUS], width + 1
+            marks[ACTIVE, low] = -1
+        while width < longest and marks[ACTIVE, rows[high, NEXT]] == count[ITERATION]:
+            high, width = rows[high, NEXT], width + 1
+            marks[ACTIVE, high] = -1
+        for _ in range(2):
+            if width < longest:
+                low, width = rows[low, PREVIOUS], width + 1
+            if width < longest:
+                high, width = rows[high, NEXT], width + 1
+        _choose(graph, state, low, high)
+    count[ACTIVE] = 0
+
+
+@njit(cache=True, nogil=True)
+def choose_all(graph: Graph, state: State) -> bool:
+    """Choose all nodes anew, for each node of the smallest cluster; whether that made the tour better."""
+    rows, first = state.rows, graph.first
+    c = graph.flags[SMALLEST]
+    low, high = rows[c, NEXT], rows[c, PREVIOUS]
+    least, node = state.cost[NOW] - state.cost[GAIN], first[c + 1]
+    for k in range(first[c], first[c + 1]):
+        best, _ = _layers(graph, state, low, high, k, k)
+        if best < least:
+            least, node = best, k
+    if node == first[c + 1]:
         return False
-    for q in range(low, high + 1):
-        work.counters[EFFORT] += layer(costs, structure, path, work, low, q)
-    if not settle(costs, structure, path, work, low, high):
-        return False
-    work.cost[0] = refresh(costs, structure, path, low, high)
-    for q in range(low - 1, high + 2):
-        push(work.queue, work.counters, structure.cluster, path.nodes, q)
+    _, chosen = _layers(graph, state, low, high, node, node)
+    _settle(state, low, high, chosen)
+    touch(state, c)
+    rows[c, NODE] = node
+    state.cost[NOW] = least
+    for c in range(len(rows)):
+        push(state, c)
     return True

@@ -29,16 +29,12 @@ class Costs(NamedTuple):
 class Structure(NamedTuple):
     """Who belongs to whom.
 
-    cluster (n,); first (m + 1,) nodes of a cluster; partner (n,) the node that replaces a node when the piece of path
-    around it is reversed; near (m, k) clusters close to each cluster, nearest first, and how far they are away;
-    the direct predecessors of cluster c are before[before[c]:before[c + 1]], its successors after[after[c]:...].
+    cluster (n,); first (m + 1,) nodes of a cluster; the direct predecessors of cluster c are
+    before[before[c]:before[c + 1]], its successors after[after[c]:...].
     """
 
     cluster: IntArray
     first: IntArray
-    partner: IntArray
-    near: IntArray
-    distance: FloatArray
     before: IntArray
     after: IntArray
 
@@ -57,11 +53,3 @@ def arc(costs: Costs, i: int, j: int) -> float:
             total += step * step
         return math.sqrt(total)
     return dubins_length(data[i, 3], data[i, 4], data[i, 5], data[j, 0], data[j, 1], data[j, 2], costs.radius)
-
-
-@njit(cache=True, nogil=True)
-def link(costs: Costs, i: int, j: int) -> float:
-    """Cost of going from node i to node j, where -1 is a depot."""
-    if i < 0:
-        return 0.0 if j < 0 else costs.ends[0, j]
-    return costs.ends[1, i] if j < 0 else arc(costs, i, j)

@@ -1,112 +1,87 @@
-"""Iterated local search in slices."""
+"""Annealed iterations of perturbation and descent, in slices."""
 
 from __future__ import annotations
 
-import numpy as np
+import math
 
 from optplan.compiled import njit
-from optplan.ordering._kernels.choice import layer, settle
-from optplan.ordering._kernels.costs import Costs, Structure
-from optplan.ordering._kernels.descent import improve, may_swap, swap
-from optplan.ordering._kernels.path import (
-    EFFORT,
+from optplan.ordering._kernels.choice import choose_all, choose_around
+from optplan.ordering._kernels.exchange import bridge, improve
+from optplan.ordering._kernels.ruin import recreate, ruin
+from optplan.ordering._kernels.tour import (
+    ACTIVE,
+    BEFORE,
+    BEST,
+    CHANGED,
+    CHOICES,
     FINISHED,
+    GAIN,
     HEAD,
-    ITERATIONS,
-    LAYER,
-    SWEEP,
-    WAITING,
-    Path,
-    Work,
-    copy,
+    ITERATION,
+    NOW,
+    QUEUE,
+    WORK,
+    Graph,
+    State,
+    draw,
+    keep,
     push,
-    refresh,
+    take_back,
+    total,
 )
 
-SWAP = 50
-"""Longest segment that a perturbation swaps."""
-
-
-@njit(cache=True, nogil=True)
-def _random(work: Work, bound: int) -> int:
-    """A number in 0..bound-1 (splitmix64)."""
-    work.random[0] += np.uint64(0x9E3779B97F4A7C15)
-    z = work.random[0]
-    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    z = z ^ (z >> np.uint64(31))
-    return int(np.int64(z >> np.uint64(1)) % bound)
-
-
-@njit(cache=True, nogil=True)
-def _perturb(costs: Costs, structure: Structure, path: Path, work: Work) -> None:
-    """Swap two neighbouring segments of random length (a double bridge close by), if precedence lets any through."""
-    count = len(path.nodes)
-    longest = max(1, min(SWAP, count // 2))
-    for _ in range(10):
-        one, two = 1 + _random(work, longest), 1 + _random(work, longest)
-        low = _random(work, count - one - two + 1)
-        middle, high = low + one, low + one + two - 1
-        if may_swap(structure.cluster, structure.before, path.nodes, path.place, low, middle, high):
-            swap(path.nodes, work.buffer, low, middle, high)
-            work.cost[0] = refresh(costs, structure, path, low, high)
-            for p in (low - 1, low, low + two - 1, low + two, high, high + 1):
-                push(work.queue, work.counters, structure.cluster, path.nodes, p)
-            return
-        longest = max(1, longest // 2)
+BRIDGES = 3
+"""Of ten perturbations so many swap two pieces; the others ruin and recreate."""
+TOGETHER = 20_000
+"""Arcs that a choice of all nodes may look at each time the best tour is improved; if more, it is done less often."""
+EXACTLY = 8192
+"""Iterations after which the cost is summed anew: rounding must not pile up."""
 
 
 @njit(cache=True, nogil=True)
 def search(
-    costs: Costs,
-    structure: Structure,
-    path: Path,
-    best: Path,
-    work: Work,
-    limit: int,
-    target: float,
-    budget: int,
+    graph: Graph, state: State, limit: int, target: float, budget: int, hot: float, cold: float, schedule: int
 ) -> None:
-    """Go on for about `budget` arc costs, or until `limit` iterations or the target are reached (counters[FINISHED]).
+    """Go on for about `budget` units of work (some us), or until `limit` iterations or the target (counts[FINISHED]).
 
-    One iteration is a perturbation of the best path, a descent to the next local optimum, and a return to the best
-    path unless the new one is as good. The descent from the first path is not counted. Every now and then all nodes
-    are chosen anew for the present order of clusters (counters[SWEEP]: 1 in progress, 0 not, -1 never).
+    One iteration perturbs the tour, descends to the next local optimum, and keeps the result or takes it back, as in
+    simulated annealing. The temperature falls from `hot` to `cold` mean arcs of the best tour over `schedule`
+    iterations; 0: it stays hot. The descent from the first tour is not counted.
     """
-    counters = work.counters
-    count = len(path.nodes)
-    counters[EFFORT] = 0
-    begin: int = np.int64(0)  # type: ignore[assignment]  # a plain 0 would be compiled as a signature of its own
-    while counters[EFFORT] < budget:
-        if counters[WAITING] > 0:
-            c = work.queue[0, counters[HEAD]]
-            counters[HEAD] = (counters[HEAD] + 1) % count
-            counters[WAITING] -= 1
-            work.queue[1, c] = 0
-            improve(costs, structure, path, work, c)
+    count, lists, cost = state.counts, state.lists, state.cost
+    size, choices = len(state.rows), graph.flags[CHOICES]
+    count[WORK] = 0
+    while count[WORK] < budget:
+        count[WORK] += 1
+        if count[QUEUE] > 0:
+            c = lists[QUEUE, count[HEAD]]
+            count[HEAD] = count[HEAD] + 1 if count[HEAD] + 1 < size else 0
+            count[QUEUE] -= 1
+            state.marks[QUEUE, c] = 0
+            if improve(graph, state, c):
+                push(state, c)
             continue
-        if counters[SWEEP] == 1:
-            counters[EFFORT] += layer(costs, structure, path, work, begin, counters[LAYER])
-            counters[LAYER] += 1
-            if counters[LAYER] == count:
-                counters[LAYER] = 0
-                counters[SWEEP] = 0
-                if settle(costs, structure, path, work, begin, count - 1):
-                    work.cost[0] = refresh(costs, structure, path, begin, count - 1)
-                    for p in range(count):
-                        push(work.queue, work.counters, structure.cluster, path.nodes, p)
-            continue
-        if work.cost[0] <= work.cost[1]:
-            work.cost[1] = work.cost[0]
-            copy(path, best)
+        if choices:
+            choose_around(graph, state)
+            better = cost[NOW] < cost[BEST] - cost[GAIN] or count[ITERATION] == 0
+            if better and draw(state.random, 1 + choices // TOGETHER) == 0 and choose_all(graph, state):
+                continue
+        temperature = hot * (cold / hot) ** (count[ITERATION] / schedule) if schedule > 0 else hot
+        temperature *= abs(cost[BEST]) / size
+        chance = (draw(state.random, 2**31) + 1.0) / 2**31
+        if cost[NOW] < cost[BEFORE] - temperature * math.log(chance) or count[ITERATION] == 0:
+            keep(state)
         else:
-            work.cost[0] = work.cost[1]
-            copy(best, path)
-        counters[EFFORT] += count
-        if counters[ITERATIONS] >= limit or work.cost[1] <= target:
-            counters[FINISHED] = 1
+            take_back(state)
+        count[CHANGED] = 0
+        count[ACTIVE] = 0
+        if count[ITERATION] >= limit or cost[BEST] <= target:
+            count[FINISHED] = 1
             return
-        counters[ITERATIONS] += 1
-        _perturb(costs, structure, path, work)
-        if counters[ITERATIONS] % (20 * count) == 0 and counters[SWEEP] == 0:
-            counters[SWEEP] = 1
+        count[ITERATION] += 1
+        if count[ITERATION] % EXACTLY == 0:
+            cost[NOW] = cost[BEFORE] = total(graph, state.rows)
+        c = draw(state.random, size)
+        if draw(state.random, 10) >= BRIDGES or not bridge(graph, state, c):
+            ruin(graph, state, c)
+            recreate(graph, state)

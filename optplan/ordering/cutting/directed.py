@@ -20,14 +20,15 @@ from optplan.ordering.cutting.directed_graph import rooted_tour, takes_closed
 from optplan.ordering.cutting.directed_guess import guess
 from optplan.ordering.cutting.directed_root import CutLoop
 from optplan.ordering.cutting.directed_tree import Tree
-from optplan.ordering.local import local_search, nearest_neighbour
+from optplan.ordering.local import nearest_neighbour
 from optplan.ordering.method import Method, Run
+from optplan.ordering.search import search as anneal
 
-FIRST_ITERATIONS = 300
-"""Of the search for a path to begin with."""
-POLISH_ITERATIONS = 100
-"""Of the search from a path that the programme suggests."""
-SEARCH = Method("2opt", "for incumbents", local_search)
+FIRST_EACH = 200
+"""Iterations a cluster of the search for a path to begin with."""
+POLISH_EACH = 20
+"""Iterations a cluster of the search from a path that the programme suggests."""
+SEARCH = Method("search", "for incumbents", anneal, closed=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,11 +146,11 @@ def solve_directed(run: Run) -> StopReason:
         lp = loop.programme
         nodes = guess(tour, loop.reduced, lp.tails[: len(lp.primal)], lp.heads[: len(lp.primal)], lp.primal)
         if nodes is not None and not problem.faults(tour.path_of(nodes)):
-            search(tour.path_of(nodes), POLISH_ITERATIONS)
+            search(tour.path_of(nodes), POLISH_EACH * problem.clusters)
 
     if len(run.nodes):
         loop.learn(tour.tour_of(run.nodes))
-    search(run.nodes if len(run.nodes) else None, FIRST_ITERATIONS)
+    search(run.nodes if len(run.nodes) else None, FIRST_EACH * problem.clusters)
     loop.start()
     state = loop.run()
     finished = state == "proved"

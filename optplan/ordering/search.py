@@ -1,0 +1,168 @@
+"""`search`: local search under annealing, for open and closed paths, clusters and precedence alike."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from optplan.domain.arrays import IntArray
+from optplan.domain.ordering import OrderingProblem
+from optplan.domain.stop import StopReason
+from optplan.ordering.graph import circular_graph
+from optplan.ordering.local import nearest_neighbour
+from optplan.ordering.method import Run
+from optplan.ordering.opened import rotatable
+
+if TYPE_CHECKING:
+    from optplan.ordering._kernels.tour import Graph, State
+
+HOT = 6.0
+COLD = 0.1
+"""Temperature in the beginning and at the end of a run, in mean arcs of the best path."""
+LEAST, EACH = 5_000, 200
+"""Iterations when nothing ends the search, and those added for each cluster."""
+SLICE = 0.03
+"""Seconds between two looks at the stop rule."""
+ENDLESS = 2**62
+
+
+def search(run: Run) -> StopReason:
+    """Improve a path from any time to any time; see the kernel `search` for what an iteration is.
+
+    Starts from the given solution, else from nearest neighbours. Anneals over the iteration limit when there is one
+    (the answer is then the same for the same seed), else over the time limit, else over 200 iterations a cluster.
+    Beyond 3000 nodes (1000 under Dubins) costs are computed on demand, and memory grows with the nodes.
+    """
+    problem = run.problem
+    if not problem.closed:
+        return _anneal(run, None)
+    firsts = _firsts(problem)
+    if len(firsts) == 1:
+        return _anneal(run, firsts[0])
+    stopped = StopReason.FINISHED
+    for number, c in enumerate(firsts):
+        stopped = _anneal_from(run, c, 1.0 / (len(firsts) - number))
+        if stopped in (StopReason.CANCELLED, StopReason.TARGET):
+            break
+    return stopped
+
+
+def _firsts(problem: OrderingProblem) -> list[int]:
+    """Clusters of which one must be listed first; the smallest where that does not matter."""
+    sizes = np.diff(problem.first_node)
+    if rotatable(problem):
+        return [int(sizes.argmin())]
+    possible = np.isfinite(np.minimum.reduceat(problem.start_costs, problem.first_node[:-1]))
+    possible[problem.precedence[:, 1]] = False
+    firsts: list[int] = np.flatnonzero(possible).tolist()
+    return firsts
+
+
+def _anneal_from(run: Run, first: int, share: float) -> StopReason:
+    """Search the closed paths that begin with this cluster, with a share of what is left of the limits."""
+    problem = run.problem
+    limit = run.rule.iterations
+    part = run.within(
+        share * run.clock.remaining, None if limit is None else math.ceil(share * max(0, limit - run.iterations))
+    )
+    part.problem = replace(problem, start_costs=np.where(problem.cluster == first, problem.start_costs, np.inf))
+    if part.start is not None and problem.cluster[part.start[0]] != first:
+        part.start = None
+    stopped = _anneal(part, first)
+    run.adopt(part)
+    return stopped
+
+
+def _anneal(run: Run, anchor: int | None) -> StopReason:
+    from optplan.ordering._kernels.search import search as advance
+    from optplan.ordering._kernels.tour import BEST, FINISHED, ITERATION
+
+    start, stopped = _start(run)
+    if start is None:
+        return stopped
+    if anchor is not None:
+        start = np.roll(start, -int(np.flatnonzero(run.problem.cluster[start] == anchor)[0]))
+    graph = circular_graph(run.problem, anchor)
+    state = _state(graph, run.problem.cluster[start], start, run.seed)
+    limit = run.rule.iterations
+    timed = limit is None and math.isfinite(run.rule.seconds)
+    if limit is None:
+        limit = ENDLESS if timed else LEAST + EACH * run.problem.clusters
+    known, budget, used = math.inf, 500, 0.0
+    while True:
+        began = time.perf_counter()
+        if timed:
+            used = min(1.0, run.clock.elapsed / run.rule.seconds)
+        hot = HOT * (COLD / HOT) ** used
+        advance(graph, state, limit, run.rule.target, budget, hot, COLD, 0 if timed else limit)
+        run.iterations = int(state.counts[ITERATION])
+        if state.cost[BEST] < known:
+            known = float(state.cost[BEST])
+            run.offer(_path(state, anchor, len(graph.first) - 2))
+        stop = run.stop()
+        if stop or state.counts[FINISHED]:
+            return stop or StopReason.FINISHED
+        # how long a slice takes changes only when the rules are looked at, not what is found
+        spent = max(time.perf_counter() - began, 1e-6)
+        budget = int(budget * min(2.0, max(0.5, SLICE / spent)))
+
+
+def _start(run: Run) -> tuple[IntArray | None, StopReason]:
+    """The path to begin with, perhaps with infinite arcs, and why there is none."""
+    if run.start is not None:
+        return run.start, StopReason.FINISHED
+    part = run.within(math.inf)
+    stopped = nearest_neighbour(part, 1)
+    start = part.nodes if len(part.nodes) else part.start
+    part.iterations = 0
+    run.adopt(part)
+    return (None if stopped in (StopReason.CANCELLED, StopReason.TARGET) else start), stopped
+
+
+def _state(graph: Graph, clusters: IntArray, nodes: IntArray, seed: int) -> State:
+    """The search at its beginning, with every cluster in the queue."""
+    from optplan.ordering._kernels.tour import ACTIVE, ANCHOR, END, QUEUE, State
+    from optplan.ordering._kernels.tour import total as cost_of
+
+    anchor, size = int(graph.flags[ANCHOR]), len(graph.first) - 1
+    if len(clusters) < size:
+        clusters, nodes = np.append(anchor, clusters), np.append(graph.first[anchor], nodes)
+    rows = np.zeros((size, 4), dtype=np.int64)
+    steps = np.arange(size) * (END // (size + 1))
+    rows[clusters] = np.column_stack([np.roll(clusters, -1), np.roll(clusters, 1), nodes, steps])
+    lists, marks = np.zeros((5, size), dtype=np.int64), np.full((5, size), -1, dtype=np.int64)
+    lists[ACTIVE], lists[QUEUE] = clusters, clusters
+    marks[ACTIVE:] = 0
+    marks[QUEUE] = 1
+    count = np.zeros(9, dtype=np.int64)
+    count[ACTIVE] = count[QUEUE] = size
+    cost = float(cost_of(graph, rows))
+    mean = max(abs(cost) / size, 1e-300)
+    return State(
+        rows,
+        rows.copy(),
+        rows[:, [0, 2]].copy(),
+        marks,
+        lists,
+        np.zeros(graph.first[-1]),
+        np.zeros(graph.first[-1], dtype=np.int64),
+        count,
+        # gains in the last digits are rounding, and could go on for ever
+        np.array([cost, cost, cost, 1e-10 * mean]),
+        np.array([seed % 2**64], dtype=np.uint64),
+    )
+
+
+def _path(state: State, anchor: int | None, depot: int) -> IntArray:
+    """The best tour's nodes from the anchor on; without the depot."""
+    following, nodes = state.best.T.tolist()
+    first = depot if anchor is None else anchor
+    path, c = [], following[first]
+    while c != first:
+        path.append(nodes[c])
+        c = following[c]
+    return np.array(path if anchor is None else [nodes[first], *path], dtype=np.int64)
