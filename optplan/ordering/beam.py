@@ -11,6 +11,7 @@ from optplan.domain.stop import StopReason
 from optplan.ordering.cutoff import Cutoff, cutoff
 from optplan.ordering.ideals_bound import Relaxation
 from optplan.ordering.ideals_layers import Sweep, most_states, sweep
+from optplan.ordering.local import nearest_neighbour
 from optplan.ordering.method import Run
 from optplan.ordering.search import search
 
@@ -80,6 +81,11 @@ def widen(hunt: Hunt, widest: int, width: int = FIRST_WIDTH) -> StopReason:
     Without a time limit it also ends after `MOST_STATES`. Leaves the better direction in the hunt, and the floor there.
     """
     run, total = hunt.run, 0
+    if len(run.nodes) == 0 and not run.stop():
+        near = run.within(math.inf, 1)
+        nearest_neighbour(near)
+        near.iterations = 0
+        run.adopt(near)
     directions = [0, 1] if width < BOTH_WIDTH else [hunt.direction]
     while width <= widest and (total <= MOST_STATES or math.isfinite(run.rule.seconds)):
         began = run.clock.elapsed

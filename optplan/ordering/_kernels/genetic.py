@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray, IntArray
-from optplan.ordering._kernels.costs import Costs, Structure, arc, link
+from optplan.ordering._kernels.costs import Costs, Structure, arc
 
 SeedArray = npt.NDArray[np.uint64]
 
@@ -96,15 +96,16 @@ def _repair(structure: Structure, order: IntArray, rank: IntArray, waiting: IntA
 
 @njit(cache=True, nogil=True)
 def _cost(costs: Costs, order: IntArray, choice: IntArray, closed: bool) -> float:
-    total, here = 0.0, -1
-    for c in order:
-        node = choice[c]
-        total += link(costs, here, node) + costs.ends[2, node]
-        here = node
-    total += link(costs, here, -1)
+    last = choice[order[-1]]
+    total = costs.ends[0, choice[order[0]]] + costs.ends[1, last]
+    for p in range(len(order)):
+        node = choice[order[p]]
+        total += costs.ends[2, node]
+        if p > 0:
+            total += arc(costs, choice[order[p - 1]], node)
     if closed:
-        total += arc(costs, here, choice[order[0]])
-    return total
+        total += arc(costs, last, choice[order[0]])
+    return float(total)
 
 
 @njit(cache=True, nogil=True)

@@ -71,7 +71,7 @@ def _evolve(run: Run, settings: Genetic, precedence: IntArray) -> StopReason:
 
     problem = run.problem
     obeyed = replace(problem, precedence=np.concatenate([precedence, _fixed_ends(problem, precedence)]))
-    costs, structure = kernel_costs(problem), kernel_structure(obeyed, neighbours=0)
+    costs, structure = kernel_costs(problem), kernel_structure(obeyed)
     parents, children = _first_generation(run, settings.population), _empty(settings.population, problem.clusters)
     random = np.array([run.seed % 2**64], dtype=np.uint64)
     buffer = np.zeros((3, problem.clusters), dtype=np.int64)
