@@ -16,10 +16,9 @@ from optplan.ordering.baselines.shifted import noon_bean, refuse_precedence_or_m
 from optplan.ordering.baselines.tree import kernel_first, refuse_no_forest
 from optplan.ordering.baselines.two_opt import two_opt
 from optplan.ordering.beam import beam_search
-from optplan.ordering.bounds import lower_bound
 from optplan.ordering.branch import branch_and_bound
 from optplan.ordering.branch import refuse_many_nodes as refuse_large_trees
-from optplan.ordering.cutting.directed import refuse_many_nodes, solve_directed
+from optplan.ordering.cuts import lower_bound, refuse_no_form, solve_by_cuts
 from optplan.ordering.exact import flow_by_highs, mtz_by_highs, plain_mtz_by_highs, refuse_many_arcs
 from optplan.ordering.ideals import prove_by_ideals, refuse_loose_precedence
 from optplan.ordering.ideals_bound import refuse_large_tables
@@ -36,6 +35,7 @@ _METHODS = (
         "proof where proof is cheap, else search and a bound",
         choose_and_solve,
         refuse_unknown_costs,
+        closed=True,
         proves=True,
         improves=True,
     ),
@@ -47,7 +47,7 @@ _METHODS = (
         closed=True,
         improves=True,
     ),
-    Method("cuts", "cutting planes, then branch and cut", solve_directed, refuse_many_nodes, closed=True, proves=True),
+    Method("cuts", "cutting planes, then branch and cut", solve_by_cuts, refuse_no_form, closed=True, proves=True),
     Method("dp", "dynamic programme over order ideals", prove_by_ideals, refuse_loose_precedence, proves=True),
     Method("beam", "beam search over order ideals", beam_search, refuse_large_tables, proves=True, improves=True),
     Method("bnb", "depth-first branch and bound, as published", branch_and_bound, refuse_large_trees, proves=True),

@@ -12,7 +12,7 @@ from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering.arrays import dense_costs
-from optplan.ordering.bounds import lower_bound
+from optplan.ordering.bounds import tree_bound
 from optplan.ordering.method import Run
 from optplan.ordering.search import search
 
@@ -45,7 +45,7 @@ def mtz_by_highs(run: Run) -> StopReason:
     if stopped in (StopReason.CANCELLED, StopReason.TARGET):
         return stopped
     # cheap, and there is something to show when the model does not get far
-    run.prove(lower_bound(run.problem, StopRule(max(0.2 * run.clock.remaining, 0.1), cancelled=run.rule.cancelled)))
+    run.prove(tree_bound(run.problem, StopRule(max(0.2 * run.clock.remaining, 0.1), cancelled=run.rule.cancelled)))
     return prove_by_highs(run)
 
 

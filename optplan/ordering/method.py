@@ -171,12 +171,15 @@ class Method:
             run.offer(run.start)
         if reason := self._refusal(run.problem):
             raise SolverError(f"{self.name} cannot take this problem: {reason}")
-        if run.problem.closed and not self.closed and run.problem.clusters > 1:
-            stopped = self._search_opened(run)
-        else:
-            stopped = _trivial(run) if run.problem.clusters <= 1 else self.search(run)
+        stopped = self.work(run)
         nodes = smaller.expand(run.nodes) if len(run.nodes) else run.nodes
         return _answer(problem, run, nodes, stopped, self.name)
+
+    def work(self, run: Run) -> StopReason:
+        """Search, whatever the size, and closed paths as open ones where the search takes no others."""
+        if run.problem.clusters <= 1:
+            return _trivial(run)
+        return self._search_opened(run) if run.problem.closed and not self.closed else self.search(run)
 
     def _search_opened(self, run: Run) -> StopReason:
         """Search the open paths one after the other; the tour's bound is the least of theirs."""
