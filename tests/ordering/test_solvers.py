@@ -68,7 +68,7 @@ def test_each_solver_is_put_into_a_group() -> None:
 
 def test_the_oracles_agree() -> None:
     for case in CASES:
-        if case.problem.clusters <= 4:
+        if case.problem.clusters <= 3 or case.name.startswith("dubins-4"):
             assert optimum_by_product(case.problem) == pytest.approx(case.optimum)
 
 
@@ -84,7 +84,7 @@ def test_answers_bracket_the_optimum(solver: str, case: Case) -> None:
         assert answer.stopped is StopReason.FINISHED
 
 
-MODEL_CASES = [("mtz-lifted", case) for case in CASES[1::4]] + [("mtz", case) for case in CASES[2::20]]
+MODEL_CASES = [("mtz-lifted", case) for case in CASES[1::8]] + [("mtz", case) for case in CASES[2::20]]
 MODEL_CASES += [("flow", case) for case in CASES[3::12]]
 MODEL_CASES += [("noon-bean", case) for case in CASES[::15] if not len(case.problem.precedence)]
 
@@ -156,7 +156,7 @@ def test_same_seed_same_answer(solver: str, kind: str) -> None:
 
 @EVERY
 def test_cancel_ends_with_what_is_known(solver: str) -> None:
-    problem = strokes(9)
+    problem = some_strokes(solver)
     calls = []
 
     def cancelled() -> bool:
@@ -167,29 +167,30 @@ def test_cancel_ends_with_what_is_known(solver: str) -> None:
     answer = solve(
         problem, solver, StopRule(cancelled=cancelled, iterations=10**9 if solver in ANYTIME else None), 0, given
     )
-    judge(problem, answer, optimum_of_strokes())
+    judge(problem, answer, solve(problem, "brute").cost)
     assert answer.stopped is StopReason.CANCELLED or answer.status is Status.OPTIMAL
-    assert len(answer.nodes) == 9
+    assert len(answer.nodes) == problem.clusters
     at_once = solve(problem, solver, StopRule(cancelled=lambda: True), 0, given)
     assert at_once.stopped is StopReason.CANCELLED
     assert at_once.seconds < 5
 
 
-def optimum_of_strokes() -> float:
-    return solve(strokes(9), "brute").cost
+def some_strokes(solver: str) -> OrderingProblem:
+    """Few enough to be proved in a second."""
+    return strokes(6 if solver in MODELS else 9)
 
 
 @EVERY
 def test_target_ends_the_search(solver: str) -> None:
-    problem = strokes(9)
+    problem = some_strokes(solver)
     answer = solve(problem, solver, StopRule(target=1e6, iterations=10**9 if solver in ANYTIME else None))
-    assert len(answer.nodes) == 9
+    assert len(answer.nodes) == problem.clusters
     assert answer.stopped is StopReason.TARGET or answer.status is Status.OPTIMAL
 
 
 @EVERY
 def test_never_worse_than_the_start(solver: str) -> None:
-    problem = strokes(9)
+    problem = some_strokes(solver)
     best = solve(problem, "brute")
     answer = solve(problem, solver, StopRule(iterations=3) if solver in SEARCHES else None, start=best.nodes)
     assert answer.cost <= best.cost + 1e-12
@@ -200,7 +201,9 @@ def test_never_worse_than_the_start(solver: str) -> None:
 @EVERY
 def test_progress_improves(solver: str) -> None:
     seen: list[Progress] = []
-    answer = solve(strokes(8), solver, StopRule(iterations=20) if solver in SEARCHES else None, progress=seen.append)
+    answer = solve(
+        some_strokes(solver), solver, StopRule(iterations=20) if solver in SEARCHES else None, progress=seen.append
+    )
     assert seen
     assert all(p.stage == "order" and p.bound <= p.cost for p in seen)
     costs = [point.cost for point in answer.trace]
