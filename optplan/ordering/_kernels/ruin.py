@@ -31,7 +31,7 @@ from optplan.ordering._kernels.tour import (
     touch,
 )
 
-MOST = 10
+MOST = 20
 """Most clusters taken out at once."""
 STRING = 6
 """Longest string taken out."""
@@ -63,7 +63,7 @@ def ruin(graph: Graph, state: State, seed: int) -> None:
     """Take out strings around cluster `seed` and clusters near it."""
     rows, near, count = state.rows, graph.near, state.counts
     anchor = graph.flags[ANCHOR]
-    most = min(MOST, (len(rows) - 2) // 2 + 1)
+    most = min(MOST, len(rows) - 1)
     wanted = 1 + draw(state.random, most)
     side = draw(state.random, 2)
     for k in range(-1, near.shape[2]):

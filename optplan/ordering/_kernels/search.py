@@ -34,6 +34,8 @@ BRIDGES = 3
 """Of ten perturbations so many swap two pieces; the others ruin and recreate."""
 TOGETHER = 20_000
 """Arcs that a choice of all nodes may look at each time the best tour is improved; if more, it is done less often."""
+ALWAYS = 1000
+"""Arcs up to which all nodes are chosen anew in every iteration."""
 EXACTLY = 8192
 """Iterations after which the cost is summed anew: rounding must not pile up."""
 
@@ -64,7 +66,8 @@ def search(
         if choices:
             choose_around(graph, state)
             better = cost[NOW] < cost[BEST] - cost[GAIN] or count[ITERATION] == 0
-            if better and draw(state.random, 1 + choices // TOGETHER) == 0 and choose_all(graph, state):
+            whole = choices <= ALWAYS or (better and draw(state.random, 1 + choices // TOGETHER) == 0)
+            if whole and choose_all(graph, state):
                 continue
         temperature = hot * (cold / hot) ** (count[ITERATION] / schedule) if schedule > 0 else hot
         temperature *= abs(cost[BEST]) / size
@@ -85,3 +88,8 @@ def search(
         if draw(state.random, 10) >= BRIDGES or not bridge(graph, state, c):
             ruin(graph, state, c)
             recreate(graph, state)
+        if choices:
+            # an order is judged with its own nodes, not with those of the order before it
+            choose_around(graph, state)
+            if choices <= ALWAYS:
+                choose_all(graph, state)
