@@ -12,12 +12,14 @@ from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason
 from optplan.ordering.cutoff import TOLERANCE, cutoff
 from optplan.ordering.ideals_bound import SAFETY
-from optplan.ordering.ideals_network import MAX_NODES, sides
+from optplan.ordering.ideals_network import sides
 from optplan.ordering.method import Run
 
 if TYPE_CHECKING:
     from optplan.ordering._kernels.branch import Tree
 
+MAX_NODES = 2000
+"""Most nodes: the arcs are written out, and listed for each node of the tree."""
 MOST_VISITS = 50_000_000
 """Nodes of the tree after which the search ends when nothing else ends it: some 20 to 40 s."""
 SLICE = 50_000_000

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from optplan.ordering._kernels.ideals import Guide
     from optplan.ordering._kernels.ideals_bound import Links, Walks
 
-MAX_TABLE = 5_000_000
-"""Most places x nodes: 20 bytes each in both directions."""
+MAX_TABLE = 600_000
+"""Most places x nodes: beyond, setting up the tables and one step of the ascent take too long to be called off."""
 WALK_SLICE = 20_000_000
 """Arcs looked at between two looks at the stop rule: some 0.03 s."""
 CELL_WORK = 5
