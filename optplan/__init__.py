@@ -33,6 +33,11 @@ _HOMES = {
     "load_plan": "optplan.schema.plans",
     "save_plan": "optplan.schema.plans",
     "draw": "optplan.plot",
+    "draw_convergence": "optplan.plot",
+    "compare_solvers": "optplan.compare",
+    "load_case": "optplan.compare",
+    "read_tsplib": "optplan.ordering.tsplib",
+    "lower_bound": "optplan.ordering",
     "export_plan": "optplan.exports",
     "instance": "optplan.instances",
     "instance_names": "optplan.instances",
@@ -55,6 +60,8 @@ _HOMES = {
 }
 
 if TYPE_CHECKING:
+    from optplan.compare import compare_solvers as compare_solvers
+    from optplan.compare import load_case as load_case
     from optplan.connectors.driving import connect as connect
     from optplan.coverage import cover as cover
     from optplan.coverage.nesting import containment as containment
@@ -79,10 +86,13 @@ if TYPE_CHECKING:
     from optplan.instances import instance_names as instance_names
     from optplan.jobs.reading import read as read
     from optplan.judge import verify as verify
+    from optplan.ordering import lower_bound as lower_bound
     from optplan.ordering import solve as solve
+    from optplan.ordering.tsplib import read_tsplib as read_tsplib
     from optplan.pipeline import plan as plan
     from optplan.pipeline import plan_from as plan_from
     from optplan.plot import draw as draw
+    from optplan.plot import draw_convergence as draw_convergence
     from optplan.problem import ordering_problem as ordering_problem
     from optplan.problem import traversals as traversals
     from optplan.robots import load_robot as load_robot

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from optplan.compare import Case, Result, compare, csv_text, load_case, summary_rows
+from optplan.compare import Case, Result, compare_solvers, csv_text, load_case, summary_rows
 from optplan.compare.runs import verified
 from optplan.domain.errors import InputError
 from optplan.domain.ordering import Status
@@ -22,7 +22,7 @@ CASE = Case("nine", strokes(9))
 
 
 def test_every_combination_is_run_and_verified() -> None:
-    results = list(compare([CASE], ["nn", "brute"], seeds=(0, 3), budgets=(1.0, 2.0)))
+    results = list(compare_solvers([CASE], ["nn", "brute"], seeds=(0, 3), budgets=(1.0, 2.0)))
     assert [(r.solver, r.budget, r.seed) for r in results] == [
         (solver, budget, seed) for solver in ("nn", "brute") for budget in (1.0, 2.0) for seed in (0, 3)
     ]
@@ -31,7 +31,7 @@ def test_every_combination_is_run_and_verified() -> None:
 
 
 def test_tables_know_the_best() -> None:
-    results = list(compare([CASE], ["nn", "brute"], budgets=(5.0,)))
+    results = list(compare_solvers([CASE], ["nn", "brute"], budgets=(5.0,)))
     rows = list(csv.DictReader(io.StringIO(csv_text(results))))
     assert float(rows[1]["excess"]) == 0
     assert float(rows[0]["best"]) == pytest.approx(results[1].cost)
@@ -44,12 +44,12 @@ def test_tables_know_the_best() -> None:
 def test_what_was_known_before_counts() -> None:
     best = solve(CASE.problem, "brute").cost
     known = replace(CASE, best_known=0.5 * best)
-    (result,) = compare([known], ["brute"], budgets=(5.0,))
+    (result,) = compare_solvers([known], ["brute"], budgets=(5.0,))
     assert "100.00 %" in summary_rows([result])[0]
 
 
 def test_refusals_are_results() -> None:
-    (result,) = compare([Case("large", strokes(200))], ["brute"])
+    (result,) = compare_solvers([Case("large", strokes(200))], ["brute"])
     assert result.status == "refused"
     assert "at most" in result.message
     assert math.isinf(result.cost)
@@ -57,7 +57,7 @@ def test_refusals_are_results() -> None:
 
 def test_a_cancel_keeps_what_was_measured() -> None:
     results: list[Result] = []
-    for result in compare([CASE], list(SOLVERS), cancelled=lambda: len(results) >= 2):
+    for result in compare_solvers([CASE], list(SOLVERS), cancelled=lambda: len(results) >= 2):
         results.append(result)
     assert len(results) == 2
 
@@ -65,7 +65,7 @@ def test_a_cancel_keeps_what_was_measured() -> None:
 @pytest.mark.parametrize("arguments", [{"solvers": ["x"]}, {"seeds": [-1]}, {"budgets": [0.0]}])
 def test_bad_questions_are_refused_at_once(arguments: dict[str, list[object]]) -> None:
     with pytest.raises(InputError):
-        compare(**({"cases": [CASE], "solvers": ["nn"]} | arguments))  # type: ignore[arg-type]
+        compare_solvers(**({"cases": [CASE], "solvers": ["nn"]} | arguments))  # type: ignore[arg-type]
 
 
 def test_answers_are_checked_independently() -> None:

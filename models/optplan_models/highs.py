@@ -6,23 +6,16 @@ incumbents and bounds, so that whatever it knew then is not lost.
 
 from __future__ import annotations
 
-import contextlib
 import math
-import pickle
-import queue
-import struct
-import subprocess
-import sys
-import tempfile
-import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
+from optplan_models.child import GRACE, Child, ChildError
 
 Floats = npt.NDArray[np.float64]
 _ARRAYS = (
@@ -35,15 +28,12 @@ _ARRAYS = (
     "values",
     "integer",
 )
-WORKER = Path(__file__).with_name("highs_worker.py")
-POLL = 0.03
-"""Seconds between two looks at the cancel."""
-GRACE = 2.0
-"""Seconds past the time limit that the child gets to report its last bound."""
+HighsError = ChildError
+"""HiGHS crashed or could not be started; says how."""
 
 
-class HighsError(Exception):
-    """The child process failed; says how."""
+class InfeasibleError(ChildError):
+    """The model says in a row without variables that there is no solution."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +74,19 @@ class Result:
 
 
 def compile_model(model: Any) -> Compiled:
-    """Compile a linear or mixed-integer linear Pyomo model (minimisation)."""
+    """Compile a linear or mixed-integer linear Pyomo model (minimisation).
+
+    Raises
+    ------
+    InfeasibleError : a row without variables says that there is no solution
+    """
+    from pyomo.common.errors import InfeasibleConstraintException
     from pyomo.repn.plugins.standard_form import LinearStandardFormCompiler
 
-    form = LinearStandardFormCompiler().write(model, mixed_form=True)
+    try:
+        form = LinearStandardFormCompiler().write(model, mixed_form=True)
+    except InfeasibleConstraintException as error:
+        raise InfeasibleError(str(error)) from None
     matrix = form.A.tocsc()
     columns = tuple(form.columns)
     kind = np.array([row.bound_type for row in form.rows], dtype=np.int64)
@@ -168,9 +167,9 @@ def run(
         },
     }
     best, proved, point = math.inf, -math.inf, None
-    with tempfile.TemporaryFile() as errors, _Child(task, errors) as child:
+    with Child("optplan_models.highs_worker:solve", task) as child:
         while True:
-            message = child.receive(POLL)
+            message = child.receive()
             if message is None:
                 if cancelled is not None and cancelled():
                     return Result("Cancelled", best, proved, point)
@@ -194,68 +193,3 @@ def run(
                 return Result(status, best, max(proved, final / scale), point)
             else:
                 raise HighsError(f"the solver's process ended unexpectedly ({child.obituary()})")
-
-
-class _Child:
-    """The child process as a context: whatever happens inside, it is dead afterwards."""
-
-    def __init__(self, task: dict[str, Any], errors: IO[bytes]) -> None:
-        self._task, self._errors = task, errors
-        self._inbox: queue.SimpleQueue[tuple[Any, ...]] = queue.SimpleQueue()
-
-    def __enter__(self) -> _Child:
-        if not sys.executable:
-            raise HighsError("there is no Python interpreter to start the solver's process with")
-        # -P: the worker's neighbours are no top-level modules
-        command = [sys.executable, "-P", str(WORKER)]
-        try:
-            self.process = subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, bufsize=-1
-            )
-        except OSError as error:
-            raise HighsError(f"the solver's process cannot be started ({error})") from error
-        # both pipes are served by threads, so that neither a slow nor a dead child blocks this one
-        self._threads = [threading.Thread(target=f, daemon=True) for f in (self._write, self._read)]
-        for thread in self._threads:
-            thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.process.kill()
-        self.process.wait()
-        for thread in self._threads:
-            thread.join()
-        for pipe in (self.process.stdin, self.process.stdout):
-            assert pipe is not None
-            with contextlib.suppress(OSError):  # flushing what the dead child did not read
-                pipe.close()
-
-    def receive(self, seconds: float) -> tuple[Any, ...] | None:
-        """The next message, or None when there is none for so long."""
-        try:
-            return self._inbox.get(timeout=seconds)
-        except queue.Empty:
-            return None
-
-    def obituary(self) -> str:
-        """How the child ended."""
-        code = self.process.wait()
-        self._errors.seek(0)
-        lines = self._errors.read().decode(errors="replace").strip().splitlines()
-        return f"exit code {code}" + (f": {lines[-1]}" if lines else "")
-
-    def _write(self) -> None:
-        assert self.process.stdin is not None
-        with contextlib.suppress(OSError):  # the child is dead; the reader says so
-            pickle.dump(self._task, self.process.stdin, protocol=5)
-            self.process.stdin.flush()
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        out = self.process.stdout
-        # a child that dies may cut off a frame in the middle
-        with contextlib.suppress(OSError, EOFError, ValueError, pickle.UnpicklingError):
-            while len(head := out.read(8)) == 8:
-                body = out.read(struct.unpack("<Q", head)[0])
-                self._inbox.put(pickle.loads(body))
-        self._inbox.put(("end",))

@@ -1,39 +1,16 @@
-"""The child process in which HiGHS works. Runs as a file, so it imports nothing of this package.
-
-In: one pickled dict on standard input, which then stays open; when it closes, the parent is gone and so is the child.
-Out: frames on standard output, each a length of 8 bytes and a pickled tuple ("bound" | "incumbent" | "done", ...).
-"""
+"""HiGHS at work in the child process of `optplan_models.highs`; sends ("bound" | "incumbent" | "done", ...)."""
 
 from __future__ import annotations
 
-import os
-import pickle
-import struct
-import sys
-import threading
 import time
-import traceback
-from typing import Any, BinaryIO
+from collections.abc import Callable
+from typing import Any
 
 BOUND_EVERY = 0.05
 """Seconds between two reports of the bound."""
 
 
-def send(out: BinaryIO, *message: Any) -> None:
-    """Write one frame."""
-    body = pickle.dumps(message, protocol=5)
-    out.write(struct.pack("<Q", len(body)) + body)
-    out.flush()
-
-
-def leave_with_parent() -> None:
-    """End the process when standard input closes."""
-    while os.read(0, 4096):
-        pass
-    os._exit(1)
-
-
-def solve(task: dict[str, Any], out: BinaryIO) -> None:
+def solve(send: Callable[..., None], task: dict[str, Any]) -> None:
     """Hand the arrays to HiGHS, stream what it finds."""
     import highspy
     import numpy as np
@@ -67,10 +44,10 @@ def solve(task: dict[str, Any], out: BinaryIO) -> None:
     def told(kind: Any, _: str, found: Any, *__: Any) -> None:
         bound = float(found.mip_dual_bound)
         if kind == highspy.cb.HighsCallbackType.kCallbackMipImprovingSolution:
-            send(out, "incumbent", float(found.objective_function_value), bound, np.array(found.mip_solution))
+            send("incumbent", float(found.objective_function_value), bound, np.array(found.mip_solution))
         elif bound > last[1] and time.perf_counter() - last[0] > BOUND_EVERY:
             last[:] = [time.perf_counter(), bound]
-            send(out, "bound", bound)
+            send("bound", bound)
 
     if integer:
         highs.setCallback(told, None)
@@ -89,26 +66,4 @@ def solve(task: dict[str, Any], out: BinaryIO) -> None:
     if status == highspy.HighsModelStatus.kInfeasible:
         bound = np.inf
     point = np.array(highs.getSolution().col_value) if has_point else None
-    send(out, "done", status.name[1:], objective, bound, point)
-
-
-def main() -> None:
-    """Read the task, solve it."""
-    # whatever libraries print must not get between the frames
-    out = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    try:
-        task = pickle.load(sys.stdin.buffer)
-        threading.Thread(target=leave_with_parent, daemon=True).start()
-        solve(task, out)
-        out.close()
-    except Exception:
-        traceback.print_exc()
-        sys.stderr.flush()
-        os._exit(1)
-    # leave without waiting for the thread, which waits for the parent
-    os._exit(0)
-
-
-if __name__ == "__main__":
-    main()
+    send("done", status.name[1:], objective, bound, point)

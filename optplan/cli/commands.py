@@ -427,21 +427,36 @@ def show(
         Path | None, typer.Option("--output", "-o", help=".png, .svg or .pdf; default: beside the plan.")
     ] = None,
     dpi: Annotated[int, typer.Option(min=20, max=1200, help="Pixels per inch of a PNG.")] = 150,
+    convergence: Annotated[
+        bool, typer.Option("--convergence", help="What the solver found and proved over time, instead of the plan.")
+    ] = False,
     force: Force = False,
     json: Json = False,
 ) -> None:
     """Picture of a plan."""
     import optplan as op
 
-    target = out or file.with_suffix(".png")
-    op.draw(op.load_plan(file), target, overwrite=force, dpi=dpi)
+    plan = op.load_plan(file)
+    if convergence:
+        if plan.ordering is None:
+            raise InputError("the plan has no order yet; run optplan order first", str(file))
+        target = out or file.with_name(f"{file.stem}-convergence.png")
+        op.draw_convergence(plan.ordering, target, title=plan.job.name, overwrite=force, dpi=dpi)
+    else:
+        target = out or file.with_suffix(".png")
+        op.draw(plan, target, overwrite=force, dpi=dpi)
     _tell_file(target, json)
 
 
 @app.command("export")
 def export_command(
     file: PlanFile,
-    to: Annotated[str, typer.Option("--to", "-t", help="csv: points with time and tool; txt: lines 'x y tool'.")],
+    to: Annotated[
+        str,
+        typer.Option(
+            "--to", "-t", help="csv: points with time and tool; txt: lines 'x y tool'; tsplib: the ordering problem."
+        ),
+    ],
     out: OutFile = None,
     spacing: Annotated[str | None, typer.Option(help="Greatest distance between points, e.g. 5cm.")] = None,
     force: Force = False,
@@ -484,10 +499,15 @@ def solvers(json: Json = False) -> None:
     """The solvers there are."""
     from optplan.ordering import SOLVERS
 
+    known = SOLVERS.values()
     if json:
-        output.print_json([{"name": solver.name, "summary": solver.summary} for solver in SOLVERS.values()])
-    else:
-        output.print_table(("solver", ""), [(solver.name, solver.summary) for solver in SOLVERS.values()])
+        abilities = ("name", "summary", "proves", "precedence", "improves")
+        output.print_json([{name: getattr(solver, name) for name in abilities} for solver in known])
+        return
+    marks = [("yes" if s.proves else "", "yes" if s.precedence else "", "yes" if s.improves else "") for s in known]
+    rows = [(solver.name, *mark, solver.summary) for solver, mark in zip(known, marks, strict=True)]
+    output.print_table(("solver", "proves", "precedence", "any-time", ""), rows)
+    print("proves: gives a bound; precedence: knows rules of order; any-time: improves as long as it may")
 
 
 @app.command()

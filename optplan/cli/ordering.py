@@ -93,7 +93,7 @@ def compare_and_print(
     json: bool,
 ) -> None:
     """Run a comparison, print its table, and write all runs as CSV if a file is given."""
-    from optplan.compare import compare, csv_text, load_case, summary_rows
+    from optplan.compare import compare_solvers, csv_text, load_case, summary_rows
     from optplan.compare.tables import COLUMNS
     from optplan.domain.units import duration
     from optplan.schema.files import write_atomically
@@ -104,7 +104,7 @@ def compare_and_print(
     cases = [load_case(source, robot) for source in sources]
     results: list[Result] = []
     with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
-        for result in compare(cases, solvers or ["auto"], seeds or [0], seconds, tell, lambda: bool(wished)):
+        for result in compare_solvers(cases, solvers or ["auto"], seeds or [0], seconds, tell, lambda: bool(wished)):
             results.append(result)
             if out is not None:  # whatever happens later, what was measured is kept
                 write_atomically(out, csv_text(results), overwrite=force or len(results) > 1)

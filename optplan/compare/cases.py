@@ -99,7 +99,8 @@ def _circles(file: Path, data: dict[str, object]) -> Case:
     with located(str(file)):
         rule = data.get("rule", {})
         numbers = {name: rule.get(name) if isinstance(rule, dict) else None for name in ("tau", "d")}
-        radius, optimum = data.get("radius"), data.get("optimum", math.inf)
+        radius, optimum = data.get("radius"), data.get("optimum")
+        optimum = math.inf if optimum is None else optimum
         tau = TAU if numbers["tau"] is None else numbers["tau"]
         distance = DISTANCE if numbers["d"] is None else numbers["d"]
         for name, value in (("radius", radius), ("optimum", optimum), ("rule.tau", tau), ("rule.d", distance)):

@@ -62,7 +62,7 @@ class Result:
         return (self.cost - self.best) / max(abs(self.best), 1e-9) if math.isfinite(self.cost) else math.inf
 
 
-def compare(
+def compare_solvers(
     cases: Sequence[Case],
     solvers: Sequence[str],
     seeds: Sequence[int] = (0,),

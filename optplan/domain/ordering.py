@@ -262,6 +262,18 @@ class Solver(Protocol):
     def summary(self) -> str:
         """One line for people."""
 
+    @property
+    def proves(self) -> bool:
+        """Whether it gives a bound, and calls a solution optimal when that is proved."""
+
+    @property
+    def precedence(self) -> bool:
+        """Whether it knows precedence; if not, its order may break it, and then it has no answer."""
+
+    @property
+    def improves(self) -> bool:
+        """Whether it goes on improving as long as it may."""
+
     def refusal(self, problem: OrderingProblem) -> str | None:
         """Why this problem is out of reach, or None when it is welcome."""
 

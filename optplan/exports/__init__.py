@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,11 +43,18 @@ def _txt(plan: Plan, spacing: float) -> str:
     return points_text(plan, spacing)
 
 
+def _tsplib(plan: Plan, _: float) -> str:
+    from optplan.exports.tsplib import tsplib_text
+
+    return tsplib_text(plan)
+
+
 FORMATS = {
     form.name: form
     for form in (
         Format("csv", "equally spaced points with time, speed, heading, curvature and tool state", ".csv", _csv),
         Format("txt", "lines 'x y tool', y down, a blank line at every turn on the spot", ".txt", _txt),
+        Format("tsplib", "the ordering problem of its strokes, for other solvers (GTSP or PCGTSP)", ".gtsp", _tsplib),
     )
 }
 """What `export_plan` writes, by name."""
@@ -73,6 +81,8 @@ def export_plan(
 
     if to not in FORMATS:
         raise InputError(f"there is no format {to!r}; expected one of {', '.join(FORMATS)}")
+    if spacing is not None and not (math.isfinite(spacing) and spacing > 0):
+        raise InputError(f"the spacing is {spacing} m; expected a finite number above 0")
     text = FORMATS[to].write(plan, usual_spacing(plan) if spacing is None else spacing)
     write_atomically(Path(file), text, overwrite=overwrite)
 

@@ -4,72 +4,115 @@ from __future__ import annotations
 
 import math
 
+from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason, StopRule
-from optplan.ordering.bounds import lower_bound
-from optplan.ordering.exact import MAX_ARCS, arc_count, prove_by_highs
-from optplan.ordering.method import OPTIMAL_GAP, Run
+from optplan.ordering.bounds import tree_bound
+from optplan.ordering.cuts import refuse_no_form, solve_by_cuts
+from optplan.ordering.ideals import prove_by_ideals, refuse_loose_precedence
+from optplan.ordering.ideals_network import closure
+from optplan.ordering.method import OPTIMAL_GAP, Method, Run
+from optplan.ordering.opened import opened
 from optplan.ordering.search import search
 from optplan.ordering.subsets import MAX_WORK, subset_programme, transitions
 
 BRUTE_SPEED = 3e8
 """Transitions of the subset programme in a second, cautiously."""
-EXACT_CLUSTERS = 30
-"""Beyond, the model with positions closes no gap in a time that anyone waits."""
-EXACT_SECONDS = 10.0
-"""Given to the model when there is no time limit."""
-SEARCH_SHARE = 0.7
+DENSE = 0.1
+"""Share of the pairs of clusters that precedence has to order for the programme over order ideals to be the first."""
+SMALL = 150
+"""Up to this many clusters cutting planes often prove the optimum."""
+CUT_CLUSTERS = 500
+"""Up to this many they are worth their time as a bound."""
+PROOF_SECONDS = 10.0
+"""For the proof when there is no time limit."""
+SHORT, EVEN, LONG = 0.15, 0.5, 0.7
+"""Share of the time for the search: before a proof that is likely, one that is not, and when none is tried."""
+BEFORE_PROOF = 0.05
+"""Most seconds a cluster for the search before a proof, however much time there is."""
 BOUND_SHARE = 0.1
+
+BRUTE = Method("brute", "", subset_programme)
+IDEALS = Method("dp", "", prove_by_ideals, refuse_loose_precedence)
+CUTS = Method("cuts", "", solve_by_cuts, refuse_no_form, closed=True)
 
 
 def choose_and_solve(run: Run) -> StopReason:
-    """Subsets when they are few; else local search, a bound, and the model when it is small."""
-    problem = run.problem
-    if transitions(problem) <= min(MAX_WORK, 0.5 * BRUTE_SPEED * run.rule.seconds) and run.rule.iterations is None:
-        run.message = f"brute: {problem.clusters} clusters are few enough to prove the optimum"
-        stop = subset_programme(run)
+    """Subsets when they are few; else a search, then the proof that suits the problem, or a bound.
+
+    With an iteration limit, which asks for a repeatable answer, the search and the bound by 1-trees alone.
+    """
+    repeatable = run.rule.iterations is not None
+    if not repeatable and _subsets(run.problem) <= min(MAX_WORK, 0.5 * BRUTE_SPEED * run.rule.seconds):
+        run.message = f"brute: {run.problem.clusters} clusters are few enough to prove the optimum"
+        stop = BRUTE.work(run)
         if run.bound > -math.inf or stop is not StopReason.TIME:
             return stop
-    provable = problem.clusters <= EXACT_CLUSTERS and arc_count(problem) <= MAX_ARCS and run.rule.iterations is None
-    run.message = f"search with a bound: {problem.clusters} clusters are too many to prove the optimum"
-    share = 0.2 if provable else SEARCH_SHARE
-    part = run.within(share * run.clock.remaining, run.rule.iterations)
+    proofs = [] if repeatable else _proofs(run.problem)
+    size = f"{run.problem.clusters} clusters"
+    run.message = f"search and a bound: {size} are too many to prove the optimum"
+    if proofs:
+        run.message = f"search, then {' and '.join(proof.name for proof in proofs)} to prove it: {size}"
+    share = LONG if not proofs else SHORT if run.problem.clusters <= SMALL or IDEALS in proofs else EVEN
+    stop = _searched(run, share, BEFORE_PROOF * run.problem.clusters if proofs else math.inf)
+    if ended := _over(run, stop):
+        return ended
+    run.prove(tree_bound(run.problem, StopRule(BOUND_SHARE * run.rule.seconds, cancelled=run.rule.cancelled)))
+    for number, proof in enumerate(proofs):
+        if ended := _over(run, stop):
+            return ended
+        stop = _proved(run, proof, 1.0 / (len(proofs) - number))
+    if ended := _over(run, stop):
+        return ended
+    if math.isfinite(run.rule.seconds):
+        run.seed += 1
+        return _searched(run, 1.0)  # what is left of the time
+    return StopReason.FINISHED
+
+
+def _subsets(problem: OrderingProblem) -> float:
+    """Work of the programme over subsets."""
+    paths = [way.problem for way in opened(problem)] if problem.closed else [problem]
+    return sum(transitions(path) for path in paths)
+
+
+def _proofs(problem: OrderingProblem) -> list[Method]:
+    """Proofs worth trying, the more hopeful first."""
+    found = []
+    count = problem.clusters
+    if len(problem.precedence) and IDEALS.refusal(problem) is None:
+        density = 2.0 * float(closure(count, problem.precedence).sum()) / (count * (count - 1))
+        found = [IDEALS] if density >= DENSE else []
+    if count <= CUT_CLUSTERS and CUTS.refusal(problem) is None:
+        found.append(CUTS)
+    return found
+
+
+def _over(run: Run, stop: StopReason) -> StopReason | None:
+    """Why to end here: nothing is left to prove, or the limits say so."""
+    if stop in (StopReason.CANCELLED, StopReason.TARGET):
+        return stop
+    if run.cost - run.bound <= OPTIMAL_GAP * max(abs(run.cost), 1e-9) or run.bound == math.inf:
+        return StopReason.FINISHED
+    return run.stop()
+
+
+def _searched(run: Run, share: float, most: float = math.inf) -> StopReason:
+    """Search for a share of the time left, or for so many seconds when there is no limit to share."""
+    timed = math.isfinite(run.rule.seconds)
+    part = run.within(min(share * run.clock.remaining, most) if timed else math.inf, run.rule.iterations)
     stop = search(part)
     run.adopt(part)
-    if stop is StopReason.CANCELLED:
-        return stop
-    ended = run.stop()
-    run.prove(lower_bound(problem, StopRule(BOUND_SHARE * run.rule.seconds, cancelled=run.rule.cancelled)))
-    if ended in (StopReason.TARGET, StopReason.ITERATIONS, StopReason.CANCELLED):
-        return ended
-    if _closed(run) or not provable:
-        if math.isfinite(run.rule.seconds) and not _closed(run):
-            return _use_the_rest(run)
-        return run.stop() or StopReason.FINISHED
-    run.message = f"search, then exact: {problem.clusters} clusters may be few enough to prove the optimum"
-    limited = math.isinf(run.rule.seconds)
-    part = run.within(EXACT_SECONDS if limited else run.clock.remaining)
-    part.nodes, part.cost = run.nodes, run.cost
-    stop = prove_by_highs(part)
-    run.adopt(part)
-    if stop is StopReason.FAILED:
-        run.message = part.message
-        return run.stop() or StopReason.FINISHED
-    if stop is StopReason.TIME and limited:
-        run.message += f"; not proved in {EXACT_SECONDS:g} s"
-        return StopReason.FINISHED
     return stop
 
 
-def _closed(run: Run) -> bool:
-    return run.cost - run.bound <= OPTIMAL_GAP * max(abs(run.cost), 1e-9)
-
-
-def _use_the_rest(run: Run) -> StopReason:
-    """Search on until the time is over."""
-    if stop := run.stop():
-        return stop
-    part = run.within(run.clock.remaining)
-    part.seed += 1
-    stop = search(part)
+def _proved(run: Run, proof: Method, share: float) -> StopReason:
+    """Try a proof for a share of the time left, or a while when there is no limit."""
+    limited = math.isinf(run.rule.seconds)
+    part = run.within(PROOF_SECONDS if limited else share * run.clock.remaining)
+    part.nodes, part.cost = run.nodes, run.cost
+    stop = proof.work(part)
+    part.iterations = 0
     run.adopt(part)
-    return run.stop() or stop
+    if stop is StopReason.FAILED:
+        run.message = f"{proof.name}: {part.message}"
+    return stop

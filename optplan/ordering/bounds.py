@@ -1,4 +1,4 @@
-"""A certified lower bound for ordering problems of any size."""
+"""A certified lower bound for ordering problems of any size, by 1-trees."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def terminals(problem: OrderingProblem) -> Terminals:
     return Terminals(enter, leave, mate)
 
 
-def lower_bound(problem: OrderingProblem, stop: StopRule | RunningStop | None = None) -> float:
+def tree_bound(problem: OrderingProblem, stop: StopRule | RunningStop | None = None) -> float:
     """No order costs less than this; infinite when there is provably none, minus infinity when nothing is known.
 
     Most of the nodes are forgotten: going from one cluster to another costs at least the cheapest arc between their

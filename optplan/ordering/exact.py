@@ -1,14 +1,18 @@
-"""`exact`: the Pyomo model with positions (MTZ), solved by HiGHS in a child process."""
+"""`mtz`, `mtz-lifted` and `flow`: complete Pyomo models, solved by HiGHS in a child process."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
-from optplan.domain.arrays import FloatArray
+import numpy as np
+
+from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering.arrays import dense_costs
-from optplan.ordering.bounds import lower_bound
+from optplan.ordering.bounds import tree_bound
 from optplan.ordering.method import Run
 from optplan.ordering.search import search
 
@@ -41,13 +45,33 @@ def mtz_by_highs(run: Run) -> StopReason:
     if stopped in (StopReason.CANCELLED, StopReason.TARGET):
         return stopped
     # cheap, and there is something to show when the model does not get far
-    run.prove(lower_bound(run.problem, StopRule(max(0.2 * run.clock.remaining, 0.1), cancelled=run.rule.cancelled)))
+    run.prove(tree_bound(run.problem, StopRule(max(0.2 * run.clock.remaining, 0.1), cancelled=run.rule.cancelled)))
     return prove_by_highs(run)
 
 
-def prove_by_highs(run: Run) -> StopReason:
-    """Let HiGHS improve and prove what the run has found so far."""
-    from optplan_models import highs
+def plain_mtz_by_highs(run: Run) -> StopReason:
+    """The model as published, without a start or a bound from elsewhere. There are no iterations."""
+    return prove_by_highs(run, lifted=False)
+
+
+def flow_by_highs(run: Run) -> StopReason:
+    """The flow model, without a start or a bound from elsewhere. There are no iterations."""
+    return _solve(run, _stated_flow(run))
+
+
+def prove_by_highs(run: Run, *, lifted: bool = True) -> StopReason:
+    """Let HiGHS improve and prove what the run has found so far, by the lifted model or the published one."""
+    return _solve(run, _stated_mtz(run, lifted))
+
+
+class Stated(NamedTuple):
+    """A Pyomo model, whose variables hold the best path known, and how to read a path (m,) from them."""
+
+    model: Any
+    path: Callable[[], IntArray]
+
+
+def _stated_mtz(run: Run, lifted: bool) -> Stated:
     from optplan_models.ordering import mtz
 
     problem = run.problem
@@ -58,18 +82,47 @@ def prove_by_highs(run: Run) -> StopReason:
         problem.end_costs,
         problem.node_costs,
         problem.precedence,
+        lifted=lifted,
     )
-    start = None
     if len(run.nodes):
         mtz.set_path(model, problem.cluster, run.nodes)
-    compiled = highs.compile_model(model)
+    return Stated(model, lambda: mtz.path_of(model))
+
+
+def _stated_flow(run: Run) -> Stated:
+    from optplan_models.ordering import flow, rooted
+
+    problem = run.problem
+    tour = rooted.with_depot(
+        dense_costs(problem),
+        problem.cluster,
+        problem.start_costs,
+        problem.end_costs,
+        problem.node_costs,
+        problem.precedence,
+    )
+    model = flow.build(tour)
     if len(run.nodes):
-        start = highs.start_values(compiled)
+        known = np.append(problem.nodes, run.nodes)  # the depot is the node behind all others
+        rooted.set_tour(model, known)
+        flow.set_flow(model, known)
+    return Stated(model, lambda: rooted.tour_of(model, tour)[1:])
+
+
+def _solve(run: Run, stated: Stated) -> StopReason:
+    from optplan_models import highs
+
+    try:
+        compiled = highs.compile_model(stated.model)
+    except highs.InfeasibleError:
+        run.prove(math.inf)
+        return StopReason.FINISHED
+    start = highs.start_values(compiled) if len(run.nodes) else None
     stopped: list[StopReason] = []
 
     def take(values: FloatArray) -> None:
         highs.load_values(compiled, values)
-        run.offer(mtz.path_of(model))
+        run.offer(stated.path())
 
     def ended() -> bool:
         # HiGHS keeps the time itself and says its last word; iterations are not counted

@@ -1,4 +1,4 @@
-"""`nn`: a path by nearest feasible neighbours."""
+"""A path by nearest feasible neighbours, from several first clusters: what searches begin with."""
 
 from __future__ import annotations
 

@@ -84,9 +84,19 @@ class Run:
     def adopt(self, part: Run) -> None:
         """Take over what a part of this run has found."""
         self.iterations += part.iterations
+        self.remember(part)
         if len(part.nodes):
             self.offer(part.nodes)
         self.prove(part.bound)
+
+    def remember(self, part: Run, extra: float = 0.0, *, bounds: bool = True) -> None:
+        """Keep the history of a part, whose costs are `extra` less than those of this run."""
+        later = part.clock.started - self.clock.started
+        cost, bound = self.cost, self.bound
+        for point in part.trace:
+            cost = min(cost, point.cost + extra)
+            bound = max(bound, point.bound + extra) if bounds else bound
+            self.trace.append(TracePoint(later + point.seconds, cost, min(bound, cost)))
 
     def _note(self) -> None:
         self.trace.append(TracePoint(self.clock.elapsed, self.cost, min(self.bound, self.cost)))
@@ -116,6 +126,7 @@ class Method:
         connections; says why it stopped
     refuse : why a problem is out of reach, or None
     closed : whether it takes closed paths; if not, it is given open ones instead, see `opened`
+    proves, precedence, improves : see `Solver`
     """
 
     name: str
@@ -123,6 +134,9 @@ class Method:
     search: Callable[[Run], StopReason]
     refuse: Callable[[OrderingProblem], str | None] = _welcome
     closed: bool = False
+    proves: bool = False
+    precedence: bool = True
+    improves: bool = False
 
     def refusal(self, problem: OrderingProblem) -> str | None:
         """Why this problem is out of reach, or None when it is welcome."""
@@ -157,12 +171,15 @@ class Method:
             run.offer(run.start)
         if reason := self._refusal(run.problem):
             raise SolverError(f"{self.name} cannot take this problem: {reason}")
-        if run.problem.closed and not self.closed and run.problem.clusters > 1:
-            stopped = self._search_opened(run)
-        else:
-            stopped = _trivial(run) if run.problem.clusters <= 1 else self.search(run)
+        stopped = self.work(run)
         nodes = smaller.expand(run.nodes) if len(run.nodes) else run.nodes
         return _answer(problem, run, nodes, stopped, self.name)
+
+    def work(self, run: Run) -> StopReason:
+        """Search, whatever the size, and closed paths as open ones where the search takes no others."""
+        if run.problem.clusters <= 1:
+            return _trivial(run)
+        return self._search_opened(run) if run.problem.closed and not self.closed else self.search(run)
 
     def _search_opened(self, run: Run) -> StopReason:
         """Search the open paths one after the other; the tour's bound is the least of theirs."""
@@ -178,6 +195,8 @@ class Method:
             stop = _trivial(part) if way.problem.clusters <= 1 else self.search(part)
             run.iterations += part.iterations
             run.message = part.message
+            # the bound of one path says nothing about the tour unless it is the only one
+            run.remember(part, way.extra, bounds=len(ways) == 1)
             if len(part.nodes):
                 run.offer(way.expand(part.nodes))
             least = min(least, part.bound + way.extra)

@@ -1,13 +1,17 @@
-"""Pictures of plans."""
+"""Pictures of plans, and of how solvers got there."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from optplan.domain.errors import InputError
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from optplan.domain.ordering import Ordering
     from optplan.domain.result import Plan
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -28,14 +32,45 @@ def draw(plan: Plan, file: str | Path, *, overwrite: bool = False, dpi: int = 15
     ------
     InputError : an unknown ending, nothing to draw yet, a file that exists or cannot be written
     """
+    from optplan.plot.picture import figure
+
+    _save(lambda: figure(plan), Path(file), overwrite, dpi)
+
+
+def draw_convergence(
+    runs: Ordering | Sequence[Ordering],
+    file: str | Path,
+    *,
+    title: str = "",
+    overwrite: bool = False,
+    dpi: int = 150,
+) -> None:
+    """Write a picture of what solvers found and proved over time: incumbents solid, lower bounds dashed.
+
+    Parameters
+    ----------
+    runs : one answer, or several to the same problem
+    file, overwrite, dpi : as `draw` takes them
+    title : of the picture
+
+    Raises
+    ------
+    InputError : as `draw`, or answers without a trace
+    """
+    from optplan.domain.ordering import Ordering
+    from optplan.plot.convergence import convergence_figure
+
+    several = [runs] if isinstance(runs, Ordering) else list(runs)
+    _save(lambda: convergence_figure(several, title), Path(file), overwrite, dpi)
+
+
+def _save(make: Callable[[], Figure], target: Path, overwrite: bool, dpi: int) -> None:
     import io
 
-    from optplan.plot.picture import figure
     from optplan.schema.files import write_atomically
 
-    target = Path(file)
     if target.suffix.lower() not in PICTURES:
         raise InputError(f"has the ending {target.suffix!r}; expected one of {', '.join(PICTURES)}", str(target))
     image = io.BytesIO()
-    figure(plan).savefig(image, format=target.suffix.lower()[1:], dpi=dpi)
+    make().savefig(image, format=target.suffix.lower()[1:], dpi=dpi)
     write_atomically(target, image.getvalue(), overwrite=overwrite)

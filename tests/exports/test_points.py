@@ -128,7 +128,7 @@ def test_malformed_lines_are_named(line: str) -> None:
 
 
 @pytest.mark.parametrize("spacing", [0.0, -1.0, math.nan, math.inf])
-@pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("form", ["csv", "txt"])
 def test_bad_spacings(form: str, spacing: float) -> None:
     with pytest.raises(InputError, match="spacing"):
         FORMATS[form].write(_plan(), spacing)

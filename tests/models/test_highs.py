@@ -17,7 +17,7 @@ import pyomo.environ as pyo
 import pytest
 
 from optplan.ordering.arrays import dense_costs
-from optplan_models import highs, highs_worker
+from optplan_models import highs, worker
 from optplan_models.ordering import mtz
 from tests.ordering_cases import strokes
 
@@ -152,5 +152,5 @@ def test_a_child_that_cannot_start(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
 
 def test_frames() -> None:
     out = io.BytesIO()
-    highs_worker.send(out, "bound", 1.5)
+    worker.send(out, "bound", 1.5)
     assert int.from_bytes(out.getvalue()[:8], "little") == len(out.getvalue()) - 8

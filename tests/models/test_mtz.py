@@ -18,10 +18,11 @@ from optplan_models.ordering import mtz
 from tests.ordering_cases import Case, cases, random_problem
 
 OPEN = (case for case in cases() if not case.problem.closed and not len(case.problem.enforced))
+PAIRS = np.zeros((0, 2), dtype=np.int64)
 CASES = [case for case in OPEN if math.isfinite(case.optimum)][::3]
 
 
-def model_of(problem: OrderingProblem) -> Any:
+def model_of(problem: OrderingProblem, *, lifted: bool = True) -> Any:
     return mtz.build(
         dense_costs(problem),
         problem.cluster,
@@ -29,13 +30,18 @@ def model_of(problem: OrderingProblem) -> Any:
         problem.end_costs,
         problem.node_costs,
         problem.precedence,
+        lifted=lifted,
     )
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)
-def test_optimum_is_feasible_and_the_relaxation_below(case: Case) -> None:
+@pytest.mark.parametrize(
+    ("case", "lifted"),
+    [*((case, True) for case in CASES), *((case, False) for case in CASES[::4])],
+    ids=[case.name for case in CASES] + [f"{case.name}-plain" for case in CASES[::4]],
+)
+def test_optimum_is_feasible_and_the_relaxation_below(case: Case, lifted: bool) -> None:
     best = solve(case.problem, "brute")
-    model = model_of(case.problem)
+    model = model_of(case.problem, lifted=lifted)
     mtz.set_path(model, case.problem.cluster, best.nodes)
     assert mtz.path_of(model).tolist() == best.nodes.tolist()
     assert pyo.value(model.cost) == pytest.approx(case.optimum)
@@ -71,3 +77,27 @@ def test_precedence_alone_can_decide() -> None:
     compiled = highs.compile_model(model)
     result = highs.run(compiled.relaxed())
     assert result.objective == pytest.approx(costs[3, 1] + costs[1, 0] + costs[0, 2])
+
+
+def test_as_published_is_weaker_and_larger() -> None:
+    problem = random_problem("euclid", 6, 2, precedence=True, start=False, end=False)
+    plain, lifted = model_of(problem, lifted=False), model_of(problem)
+    assert len(plain.x) > len(lifted.x)
+    bounds = [highs.run(highs.compile_model(model).relaxed()).bound for model in (plain, lifted)]
+    assert bounds[0] < bounds[1]
+    best = solve(problem, "brute").cost
+    assert [highs.run(highs.compile_model(model)).objective for model in (plain, lifted)] == pytest.approx([best, best])
+
+
+@pytest.mark.parametrize("count", [3, 4, 5])
+def test_the_right_hand_side_that_is_sometimes_printed_is_infeasible(count: int) -> None:
+    zeros = np.zeros(count)
+    model = mtz.build(np.ones((count, count)), np.arange(count), zeros, zeros, zeros, PAIRS[:0], lifted=False)
+    assert highs.run(highs.compile_model(model)).objective == pytest.approx(count - 1)
+    for row in model.order.values():
+        assert row.upper == count - 1
+        row.set_value(row.body <= count - 2)
+    for position in model.u.values():
+        position.setlb(None)  # not even without limits on the positions
+        position.setub(None)
+    assert highs.run(highs.compile_model(model)).status == "Infeasible"

@@ -9,6 +9,10 @@ u_a is the position of cluster a, 1..m; M_ab = latest_a - earliest_b + 1. The te
 and Laporte ("Improvements and extensions to the Miller-Tucker-Zemlin subtour elimination constraints", 1991); earliest
 and latest positions follow from precedence, which also removes arcs: backwards ones, and those that skip a cluster
 that must come in between.
+
+As published (`lifted=False`) the last rows are u_a - u_b + m X_ab <= m - 1 for all pairs of the m clusters, precedence
+is u_a - u_b <= -1, positions are within 1..m, and no arc is removed. (The m - 2 that is sometimes printed leaves no
+solution for three clusters or more.)
 """
 
 from __future__ import annotations
@@ -48,6 +52,8 @@ def build(
     end_costs: Floats,
     node_costs: Floats,
     precedence: Ints,
+    *,
+    lifted: bool = True,
 ) -> pyo.ConcreteModel:
     """The model; needs two clusters or more.
 
@@ -58,13 +64,14 @@ def build(
     start_costs, end_costs : (n,) of beginning and ending with a node; infinite where that is forbidden
     node_costs : (n,)
     precedence : (k, 2) pairs of clusters, the first before the second; no cycle
+    lifted : whether to strengthen the published rows, and to draw conclusions from precedence
 
     Returns
     -------
     model : variables x[i, j], y[i], first[i], last[i] (binary) and u[a]
     """
     count = int(cluster[-1]) + 1
-    before = closure(count, precedence)
+    before = closure(count, precedence if lifted else precedence[:0])
     arcs = possible_arcs(costs, cluster, before)
     earliest = 1 + before.sum(axis=0)
     latest = count - before.sum(axis=1)
@@ -87,7 +94,10 @@ def build(
         + pyo.quicksum(float(node_costs[i]) * model.y[i] for i in model.nodes)
     )
     _add_visits(model, cluster, count)
-    _add_positions(model, cluster, before, earliest, latest)
+    if lifted:
+        _add_lifted_positions(model, cluster, before, earliest, latest)
+    else:
+        _add_positions(model, cluster, count, precedence)
     return model
 
 
@@ -116,12 +126,31 @@ def _add_visits(model: Any, cluster: Ints, count: int) -> None:
         model.begin = pyo.Constraint(expr=pyo.quicksum(model.y.values()) == count + 1)
 
 
-def _add_positions(model: Any, cluster: Ints, before: npt.NDArray[np.bool_], earliest: Ints, latest: Ints) -> None:
-    """Positions of clusters: no subtours, and precedence."""
-    count = len(earliest)
+def _between(model: Any, cluster: Ints) -> dict[tuple[int, int], list[Any]]:
+    """The arcs from one cluster to another, by pairs of clusters."""
     between: dict[tuple[int, int], list[Any]] = {}
     for i, j in model.x:
         between.setdefault((int(cluster[i]), int(cluster[j])), []).append(model.x[i, j])
+    return between
+
+
+def _add_positions(model: Any, cluster: Ints, count: int, precedence: Ints) -> None:
+    """Positions of clusters as published: no subtours, and precedence."""
+    between = _between(model, cluster)
+    model.order = pyo.Constraint(
+        list(between), rule=lambda m, a, b: m.u[a] - m.u[b] + count * pyo.quicksum(between[a, b]) <= count - 1
+    )
+    model.precede = pyo.Constraint(
+        sorted({(int(a), int(b)) for a, b in precedence}), rule=lambda m, a, b: m.u[a] - m.u[b] <= -1
+    )
+
+
+def _add_lifted_positions(
+    model: Any, cluster: Ints, before: npt.NDArray[np.bool_], earliest: Ints, latest: Ints
+) -> None:
+    """Positions of clusters, lifted and tightened by precedence."""
+    count = len(earliest)
+    between = _between(model, cluster)
 
     def order(m: Any, a: int, b: int) -> Any:
         if a == b or earliest[b] > latest[a]:

@@ -1,0 +1,1 @@
+"""Exact ordering by linear programmes that grow by cuts and columns."""

@@ -1,0 +1,104 @@
+"""The model of generalised tours, and the fast form held against it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import time
+
+import numpy as np
+import pytest
+
+from optplan.domain.arrays import FloatArray, IntArray
+from optplan.ordering.cutting import undirected_root
+from optplan.ordering.cutting.lp import Solution
+from optplan.ordering.cutting.undirected import Undirected, undirected_form
+from optplan.ordering.cutting.undirected_lp import CutProgramme
+from optplan.ordering.cutting.undirected_root import Root, first_edges
+from optplan_models import highs
+from optplan_models.ordering import generalised
+from tests.undirected_cases import random_undirected, tour_optimum
+
+NO_TOUR = np.zeros((0, 2), dtype=np.int64)
+
+
+def form_of(kind: str, count: int, seed: int, *, closed: bool) -> tuple[Undirected, float]:
+    problem = random_undirected(kind, count, seed, closed=closed)
+    form = undirected_form(problem)
+    assert form is not None
+    return form, tour_optimum(problem)
+
+
+def all_edges(form: Undirected) -> tuple[IntArray, FloatArray]:
+    """Edges and their plain costs, without node costs."""
+    edges = first_edges(form, NO_TOUR)
+    costs = form.edge_costs(edges[:, 0], edges[:, 1]) - 0.5 * form.node_costs[edges].sum(axis=1)
+    return edges[np.isfinite(costs)], costs[np.isfinite(costs)]
+
+
+def every_set(form: Undirected) -> list[IntArray]:
+    """Every set of points that holds a whole cluster and leaves a whole one outside, once with its complement."""
+    points, sets = np.arange(form.points), []
+    for rest in itertools.product((False, True), repeat=form.points - 1):
+        inside = np.array([*rest, False])
+        held = [inside[form.cluster == c] for c in range(form.clusters)]
+        if any(h.all() for h in held) and any(not h.any() for h in held):
+            sets.append(points[inside])
+    return sets
+
+
+def relaxation(form: Undirected, edges: IntArray, costs: FloatArray, sets: list[IntArray]) -> float:
+    model = generalised.build(form.cluster, form.mate, edges, costs, form.node_costs, sets)
+    result = highs.run(highs.compile_model(model).relaxed())
+    return result.objective
+
+
+CASES = [
+    (kind, count, seed, closed)
+    for seed, (kind, count, closed) in enumerate(itertools.product(("lines", "matrix"), (3, 4), (False, True)))
+]
+
+
+@pytest.mark.parametrize(("kind", "count", "seed", "closed"), CASES)
+def test_all_cuts_make_tours(kind: str, count: int, seed: int, closed: bool) -> None:
+    form, best = form_of(kind, count, seed, closed=closed)
+    edges, costs = all_edges(form)
+    model = generalised.build(form.cluster, form.mate, edges, costs, form.node_costs, every_set(form))
+    result = highs.run(highs.compile_model(model))
+    assert result.objective == pytest.approx(best)
+
+
+@pytest.mark.parametrize(("kind", "count", "seed", "closed"), CASES)
+def test_the_cut_loop_reaches_the_relaxation_with_all_cuts(
+    kind: str, count: int, seed: int, closed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A violated cut is found as long as there is one: bound and model agree."""
+    monkeypatch.setattr(undirected_root, "STALL", -1.0)
+    form, best = form_of(kind, count, seed, closed=closed)
+    edges, costs = all_edges(form)
+    expected = relaxation(form, edges, costs, every_set(form))
+    root = Root(CutProgramme(form, edges), NO_TOUR, math.inf, time.monotonic() + 60, lambda _: None)
+    assert isinstance(root.tighten(), Solution)
+    assert root.bound <= best + 1e-9
+    assert root.bound == pytest.approx(expected, abs=1e-6 * max(1.0, abs(expected)))
+
+
+def test_the_fast_form_has_the_bound_of_the_model_with_the_same_cuts() -> None:
+    """Columns for y, degrees and cuts written out on one side, none of them on the other."""
+    problem = random_undirected("lines", 12, 5, closed=False)
+    form = undirected_form(problem)
+    assert form is not None
+    edges, costs = all_edges(form)
+    programme = CutProgramme(form, edges)
+    root = Root(programme, NO_TOUR, math.inf, time.monotonic() + 60, lambda _: None)
+    solution = root.tighten()
+    assert isinstance(solution, Solution)
+    sets = [cut.members for cut in programme.cuts]
+    assert len(sets) > 5
+    assert relaxation(form, edges, costs, sets) == pytest.approx(solution.objective, rel=1e-7)
+    fewer = CutProgramme(form, edges)
+    fewer.add_cuts(sets[::2])
+    again = fewer.programme.solve()
+    assert isinstance(again, Solution)
+    assert relaxation(form, edges, costs, sets[::2]) == pytest.approx(again.objective, rel=1e-7)
+    assert again.objective < solution.objective
