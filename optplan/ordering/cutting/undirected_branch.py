@@ -24,8 +24,10 @@ SHARE = 0.3
 """Edges of a reduced cost below this part of the gap become columns before branching."""
 FRACTION = 0.02
 """Values closer to an integer are not branched on."""
-CANDIDATES = 8
-PROBE = 40
+CANDIDATES = 12
+"""Clusters, and edges, that look most undecided: among them is the branch."""
+STAGES = ((10, 4), (80, 1))
+"""Dual simplex steps of a look at a branch, and how many of the best stay: first all candidates, then the best."""
 """Dual simplex steps of a look at a branch."""
 ROUNDS = 12
 WORTH = 0.02
@@ -34,17 +36,16 @@ AGE = 8
 
 
 class Node(NamedTuple):
-    """An open node: its bound, a number that breaks ties, points not chosen, edges not used and used (by ends)."""
+    """An open node: its bound, a number that breaks ties, edges (., 2) that it may use and that it must."""
 
     bound: float
     number: int
-    points: IntArray
-    absent: IntArray
+    allowed: IntArray
     present: IntArray
 
 
 class Branch(NamedTuple):
-    """Two children: each without some points, without some edges (k, 2), and with some."""
+    """Two children: each without some points; the first without an edge (0 or 1, 2), the second with it."""
 
     points: tuple[IntArray, IntArray]
     edge: IntArray
@@ -62,30 +63,30 @@ def branch_and_cut(root: Root, solution: Solution, found: Callable[[IntArray], N
     pool = useful_edges(root, solution)
     if pool is None:
         return False
-    heap = [Node(root.bound, 0, NONE, NO_EDGE, NO_EDGE)]
+    form = root.programme.form
+    heap = [Node(root.bound, 0, pool, NO_EDGE)]
     number = 0
     while heap:
         root.raise_bound(min(heap[0].bound, root.cutoff))
         if root.closed():
             return True
-        node = heapq.heappop(heap)
-        branch, bound = _explore(root, node, pool, found)
+        node, branch = _explore(root, heapq.heappop(heap), found)
         if root.remaining <= 0:
             return False
         if branch is None:
             continue
-        for side, absent, present in ((0, branch.edge, NO_EDGE), (1, NO_EDGE, branch.edge)):
+        for side, present in ((0, node.present), (1, np.concatenate([node.present, branch.edge]))):
             number += 1
-            child = Node(
-                bound,
-                number,
-                np.union1d(node.points, branch.points[side]),
-                np.concatenate([node.absent, absent]),
-                np.concatenate([node.present, present]),
-            )
-            heapq.heappush(heap, child)
+            gone = np.isin(node.allowed, _with_mates(form, branch.points[side])).any(axis=1)
+            if side == 0:
+                gone |= _among(form, node.allowed, branch.edge)
+            heapq.heappush(heap, Node(node.bound, number, node.allowed[~gone], present))
     root.raise_bound(root.cutoff)
     return True
+
+
+def _with_mates(form: Undirected, points: IntArray) -> IntArray:
+    return np.union1d(points, form.mate[points])
 
 
 def useful_edges(root: Root, solution: Solution) -> IntArray | None:
@@ -115,13 +116,15 @@ def useful_edges(root: Root, solution: Solution) -> IntArray | None:
     return priced.edges[useful]
 
 
-def _explore(root: Root, node: Node, pool: IntArray, found: Callable[[IntArray], None]) -> tuple[Branch | None, float]:
-    """Cut and price at a node, then choose a branch; None when nothing better is below it. Also the node's bound."""
+def _explore(root: Root, node: Node, found: Callable[[IntArray], None]) -> tuple[Node, Branch | None]:
+    """Cut and price at a node, then choose a branch; None when nothing better is below it. The node, with its bound.
+
+    Edges whose reduced cost exceeds the node's gap are in no better tour below it, and are taken away.
+    """
     programme, form = root.programme, root.programme.form
-    allowed = _allowed(form, node, pool)
-    _restrict(programme, allowed, node.present)
-    bound, rounds = node.bound, 0
+    rounds = 0
     while root.remaining > 0:
+        _restrict(programme, node)
         solution = programme.programme.solve(root.remaining)
         if solution == "TimeLimit":
             break
@@ -129,17 +132,20 @@ def _explore(root: Root, node: Node, pool: IntArray, found: Callable[[IntArray],
             if solution != "Infeasible":
                 raise RuntimeError(f"HiGHS ends a linear programme with status {solution}")
             # perhaps for want of columns
-            if programme.add_edges(allowed):
+            if programme.add_edges(node.allowed):
                 continue
-            return None, bound
+            break
         dual = programme.dual(solution)
-        reduced = programme.reduced_costs(dual, allowed, exact_below=0.0)
-        cheap = reduced < -ROUNDING
-        if programme.add_edges(allowed[cheap]):
+        reduced = programme.reduced_costs(dual, node.allowed, exact_below=max(0.0, root.cutoff - node.bound))
+        if programme.add_edges(node.allowed[reduced < -ROUNDING]):
             continue
-        before, bound = bound, max(bound, _node_bound(programme, dual, reduced, node.present))
-        if bound >= root.cutoff:
-            return None, bound
+        bound = _node_bound(programme, dual, reduced, node.present)
+        if max(bound, node.bound) >= root.cutoff:
+            break
+        rise = bound - node.bound
+        useful = bound + reduced < root.cutoff
+        useful |= _among(form, node.allowed, node.present)
+        node = Node(max(bound, node.bound), node.number, node.allowed[useful], node.present)
         sets = violated_sets(form, programme.edges, solution.primal)
         handles, teeth = violated_blossoms(form, programme.edges, solution.primal)
         whole = (np.abs(solution.primal - np.round(solution.primal)) < 1e-6).all()
@@ -150,24 +156,15 @@ def _explore(root: Root, node: Node, pool: IntArray, found: Callable[[IntArray],
                 if cost < root.cost:
                     root.tour, root.cost = edges, cost
                     found(edges)
-                return None, bound
+                break
         rounds += 1
-        pays = whole or (rounds <= ROUNDS and bound - before >= WORTH * (root.cost - bound))
+        pays = whole or (rounds <= ROUNDS and rise >= WORTH * (root.cost - node.bound))
         if not (sets or handles) or not pays:
-            return _choose(root, solution), bound
+            return node, _choose(root, solution)
         programme.purge(AGE)
         programme.add_cuts(sets)
         programme.add_cuts(handles, teeth)
-    return None, bound
-
-
-def _allowed(form: Undirected, node: Node, pool: IntArray) -> IntArray:
-    """The useful edges (k, 2) that a node may use."""
-    gone = np.zeros(form.points, dtype=np.bool_)
-    gone[node.points] = True
-    gone |= gone[form.mate]
-    edges = pool[~gone[pool].any(axis=1)]
-    return edges[~_among(form, edges, node.absent)]
+    return node, None
 
 
 def _among(form: Undirected, edges: IntArray, others: IntArray) -> Bools:
@@ -185,11 +182,11 @@ def _node_bound(programme: CutProgramme, dual: Dual, reduced: FloatArray, presen
     return dual.value + missing + forced - SAFETY * (dual.size - missing + forced)
 
 
-def _restrict(programme: CutProgramme, allowed: IntArray, present: IntArray) -> None:
+def _restrict(programme: CutProgramme, node: Node) -> None:
     """Give the columns the bounds of a node."""
     form, edges = programme.form, programme.edges
-    lower = _among(form, edges, present).astype(np.float64)
-    upper = np.where(_among(form, edges, allowed), math.inf, 0.0)
+    lower = _among(form, edges, node.present).astype(np.float64)
+    upper = np.where(_among(form, edges, node.allowed), math.inf, 0.0)
     # a contradiction stays one: the cluster's two links or a cut cannot hold
     upper = np.maximum(upper, lower)
     now = programme.programme
@@ -198,64 +195,54 @@ def _restrict(programme: CutProgramme, allowed: IntArray, present: IntArray) -> 
 
 
 def _choose(root: Root, solution: Solution) -> Branch | None:
-    """The branch whose worse child rises most, of those that look most undecided."""
-    programme, form = root.programme, root.programme.form
-    options = _splits(form, programme.edges, solution.primal) + _edges(programme, solution.primal)
-    options.sort(key=lambda option: option[0])
-    best: tuple[float, Branch] | None = None
-    now = programme.programme
-    basis = now.basis()
-    for _, branch in options[:CANDIDATES]:
-        rises = []
-        for side in (0, 1):
-            touched = np.zeros(form.points, dtype=np.bool_)
-            touched[branch.points[side]] = True
-            zero = touched[programme.edges].any(axis=1)
-            column = programme.columns_of(branch.edge) > 0 if len(branch.edge) else np.zeros_like(zero)
-            zero |= column & (side == 0)
-            one = column & (side == 1)
-            places = np.flatnonzero(zero | one)
-            kept = now.lower[places].copy(), now.upper[places].copy()
-            low = np.where(one[places], 1.0, kept[0])
-            high = np.where(zero[places], low, kept[1])
-            now.set_bounds(places, low, high)
-            value = now.probe(PROBE)
-            now.set_bounds(places, *kept)
-            now.set_basis(basis)
-            rises.append(max(value - solution.objective, 1e-6 * abs(root.cost - solution.objective)))
-        rises = [min(rise, root.cost - solution.objective) for rise in rises]
-        score = rises[0] * rises[1]
-        if best is None or score > best[0]:
-            best = score, branch
-        if root.remaining <= 0:
+    """The branch that raises the objective most in both children, as far as some dual simplex steps tell."""
+    form, edges = root.programme.form, root.programme.edges
+    branches = _splits(form, edges, solution.primal) + _edges(edges, solution.primal)
+    for steps, kept in STAGES:
+        if len(branches) <= 1:
             break
-    return None if best is None else best[1]
+        scores = [_score(root, solution, branch, steps) for branch in branches]
+        order = np.argsort(scores, kind="stable")[::-1]
+        branches = [branches[k] for k in order[:kept].tolist()]
+    return branches[0] if branches else None
 
 
-def _splits(form: Undirected, edges: IntArray, primal: FloatArray) -> list[tuple[float, Branch]]:
-    """For every cluster without a clear choice, its points in two parts chosen about half each."""
-    weight = np.bincount(edges.ravel(), np.repeat(primal, 2), form.points)
-    representative = np.minimum(np.arange(form.points), form.mate)
-    chosen = 0.5 * np.bincount(representative, weight, form.points)
-    options = []
+def _score(root: Root, solution: Solution, branch: Branch, steps: int) -> float:
+    """Product of the rises of both children after so many steps, none counted beyond the gap."""
+    form, edges, now = root.programme.form, root.programme.edges, root.programme.programme
+    gap = root.cost - solution.objective
+    basis, score = now.basis(), 1.0
+    for side in (0, 1):
+        gone = np.isin(edges, _with_mates(form, branch.points[side])).any(axis=1)
+        edge = _among(form, edges, branch.edge)
+        columns = np.flatnonzero(gone | edge)
+        kept = now.lower[columns].copy(), now.upper[columns].copy()
+        lower = np.where(edge[columns] & (side == 1), 1.0, kept[0])
+        now.set_bounds(columns, lower, lower if side == 0 else np.where(edge[columns], kept[1], lower))
+        rise = now.probe(steps) - solution.objective
+        now.set_bounds(columns, *kept)
+        now.set_basis(basis)
+        score *= min(max(rise, 1e-6 * gap), gap) if math.isfinite(gap) else max(rise, 1e-9)
+    return score
+
+
+def _splits(form: Undirected, edges: IntArray, primal: FloatArray) -> list[Branch]:
+    """For clusters without a clear choice, their points in two parts chosen about half each."""
+    first = np.minimum(np.arange(form.points), form.mate)
+    chosen = 0.5 * np.bincount(first[edges].ravel(), np.repeat(primal, 2), form.points)
     starts = np.searchsorted(form.cluster, np.arange(form.clusters + 1))
-    fractional = np.unique(form.cluster[(chosen > FRACTION) & (chosen < 1 - FRACTION)])
-    for c in fractional.tolist():
+    options = []
+    for c in np.unique(form.cluster[(chosen > FRACTION) & (chosen < 1 - FRACTION)]).tolist():
         points = np.arange(starts[c], starts[c + 1])
-        points = points[representative[points] == points]
-        total = np.cumsum(chosen[points])
-        k = int(np.abs(total - 0.5).argmin()) + 1
-        if k < len(points):
-            options.append((abs(total[k - 1] - 0.5), Branch((points[:k], points[k:]), NO_EDGE)))
-    return options
+        points = points[first[points] == points]
+        total = np.cumsum(chosen[points])[:-1]
+        k = int(np.abs(total - 0.5).argmin())
+        options.append((abs(total[k] - 0.5), k, Branch((points[: k + 1], points[k + 1 :]), NO_EDGE)))
+    return [branch for *_, branch in sorted(options, key=lambda option: option[:2])[:CANDIDATES]]
 
 
-def _edges(programme: CutProgramme, primal: FloatArray) -> list[tuple[float, Branch]]:
+def _edges(edges: IntArray, primal: FloatArray) -> list[Branch]:
     """Edges that are neither used nor not."""
     away = np.abs(primal - 0.5)
     places = np.argsort(away, kind="stable")[:CANDIDATES]
-    return [
-        (float(away[k]), Branch((NONE, NONE), programme.edges[k : k + 1]))
-        for k in places.tolist()
-        if away[k] < 0.5 - FRACTION
-    ]
+    return [Branch((NONE, NONE), edges[k : k + 1]) for k in places.tolist() if away[k] < 0.5 - FRACTION]

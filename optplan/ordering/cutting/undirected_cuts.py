@@ -79,7 +79,8 @@ def violated_blossoms(form: Undirected, edges: IntArray, weights: FloatArray) ->
     for handle in rows:
         crossing = np.flatnonzero(handle[a] != handle[b])
         x = links[crossing]
-        if undecided[crossing].sum() > 1.0 - BLOSSOM_VIOLATION:
+        # nothing across: the subtour cuts see to that
+        if not len(crossing) or undecided[crossing].sum() > 1.0 - BLOSSOM_VIOLATION:
             continue
         tooth = x > 0.5
         if tooth.sum() % 2 == 0:
