@@ -97,8 +97,8 @@ def test_the_fast_form_has_the_bound_of_the_model_with_the_same_cuts() -> None:
     assert len(sets) > 5
     assert relaxation(form, edges, costs, sets) == pytest.approx(solution.objective, rel=1e-7)
     fewer = CutProgramme(form, edges)
-    fewer.add_cuts(sets[::2])
+    fewer.add_cuts(sets[:3])
     again = fewer.programme.solve()
     assert isinstance(again, Solution)
-    assert relaxation(form, edges, costs, sets[::2]) == pytest.approx(again.objective, rel=1e-7)
+    assert relaxation(form, edges, costs, sets[:3]) == pytest.approx(again.objective, rel=1e-7)
     assert again.objective < solution.objective
