@@ -1,14 +1,29 @@
-"""Make the pictures of the documentation: `.venv/bin/python docs/pictures.py`."""
+"""Make the pictures of the documentation: `.venv/bin/python -m docs.pictures`, or with `convergence` only that one."""
 
 from __future__ import annotations
 
 import io
+import sys
 from pathlib import Path
 
 import optplan as op
+from benchmarks.drawings import drawing
 
 FOLDER = Path(__file__).parent / "pictures"
+RUNS = (("beam", 30.0), ("auto", 30.0), ("cuts", 60.0))
+"""Solvers of the picture of convergence, and the seconds each may take."""
 GALLERY = ("shark", "emblem", "mask", "flower", "floral", "letters", "fish", "logo")
+
+
+def convergence() -> None:
+    """What solvers find and prove over time on a random drawing of 60 strokes."""
+    for name, _ in RUNS:
+        op.solve(drawing(20), name, op.StopRule(seconds=5))  # so that compiling is not in the picture
+    runs = [op.solve(drawing(60), name, op.StopRule(seconds=seconds)) for name, seconds in RUNS]
+    for run in runs:
+        print(f"{run.solver}: {run.cost:.4f}, bound {run.bound:.4f} m, {run.seconds:.1f} s, {run.status.value}")
+    title = "60 strokes: metres between them"
+    op.draw_convergence(runs, FOLDER / "convergence.png", title=title, overwrite=True, dpi=100)
 
 
 def main() -> None:
@@ -37,4 +52,6 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    convergence()
+    if sys.argv[1:] != ["convergence"]:
+        main()
