@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -184,11 +184,13 @@ def verified(problem: OrderingProblem, answer: Ordering) -> bool:
 
 
 def _warm_up(name: str) -> None:
-    """Import and compile what a solver needs."""
-    points = np.random.default_rng(0).uniform(size=(8, 2))
-    tiny = OrderingProblem(np.arange(8), EuclidCosts(points, points), precedence=np.array([[0, 1]]))
-    if SOLVERS[name].refusal(tiny) is None:
-        SOLVERS[name].solve(tiny, StopRule(seconds=2.0, iterations=20), 0)
+    """Import and compile what a solver needs: for problems without a direction, with rules, and closed ones."""
+    points = np.random.default_rng(0).uniform(size=(16, 2))
+    free = OrderingProblem(np.arange(16), EuclidCosts(points, points))
+    for part in ("search", "dp", "cuts", name) if name == "auto" else (name,):
+        for tiny in (free, replace(free, precedence=np.array([[0, 1], [2, 3]])), replace(free, closed=True)):
+            if SOLVERS[part].refusal(tiny) is None:
+                SOLVERS[part].solve(tiny, StopRule(seconds=1.0, iterations=50), 0)
 
 
 def _processor_time() -> float:

@@ -107,8 +107,8 @@ def _searched(run: Run, share: float, most: float = math.inf) -> StopReason:
 
 def _proved(run: Run, proof: Method, share: float) -> StopReason:
     """Try a proof for a share of the time left, or a while when there is no limit."""
-    limited = math.isinf(run.rule.seconds)
-    part = run.within(PROOF_SECONDS if limited else share * run.clock.remaining)
+    unlimited = math.isinf(run.rule.seconds)
+    part = run.within(PROOF_SECONDS if unlimited else share * run.clock.remaining)
     part.nodes, part.cost = run.nodes, run.cost
     stop = proof.work(part)
     part.iterations = 0

@@ -194,7 +194,7 @@ class Method:
                 part.offer(part.start)
             stop = _trivial(part) if way.problem.clusters <= 1 else self.search(part)
             run.iterations += part.iterations
-            run.message = part.message
+            run.message = part.message or run.message
             # the bound of one path says nothing about the tour unless it is the only one
             run.remember(part, way.extra, bounds=len(ways) == 1)
             if len(part.nodes):
@@ -235,6 +235,9 @@ def _trivial(run: Run) -> StopReason:
 def _answer(problem: OrderingProblem, run: Run, nodes: IntArray, stopped: StopReason, solver: str) -> Ordering:
     cost = problem.cost_of(nodes) if len(nodes) or problem.clusters == 0 else math.inf
     bound = min(run.bound, cost)
+    message = run.message
+    if not message and math.isinf(cost) and bound < math.inf:
+        message = "nothing was found before it stopped"
     answer = Ordering(
         nodes,
         cost,
@@ -245,7 +248,7 @@ def _answer(problem: OrderingProblem, run: Run, nodes: IntArray, stopped: StopRe
         run.seed,
         run.clock.elapsed,
         run.iterations,
-        run.message,
+        message,
         tuple(run.trace),
     )
     if math.isinf(cost):
