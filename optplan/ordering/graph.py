@@ -122,15 +122,17 @@ def _mirror(problem: OrderingProblem, partner: IntArray) -> int:
     from optplan.ordering._kernels.tour import EXACT, ROUGHLY
 
     costs = problem.costs
+    # arcs carry the cost of the node they lead to: backwards it would be another's
+    alike = bool(np.ptp(problem.node_costs) == 0)
     if isinstance(costs, EuclidCosts | DubinsCosts):
-        turned = (costs.exits[partner, :2] == costs.entries[:, :2]).all(axis=1)
+        size = 2 if isinstance(costs, DubinsCosts) else costs.exits.shape[1]
+        turned = (costs.exits[partner, :size] == costs.entries[:, :size]).all(axis=1)
         if isinstance(costs, DubinsCosts):
             turned &= partner != np.arange(len(partner))
-        exact = turned.all() and np.array_equal(problem.node_costs[partner], problem.node_costs)
-        return EXACT if exact else ROUGHLY if turned.mean() > 1.0 - ROUGH else 0
+        return EXACT if alike and turned.all() else ROUGHLY if turned.mean() > 1.0 - ROUGH else 0
     matrix = dense_costs(problem)
     back = matrix[np.ix_(partner, partner)].T
-    if np.array_equal(back, matrix) and np.array_equal(problem.node_costs[partner], problem.node_costs):
+    if alike and np.array_equal(back, matrix):
         return EXACT
     finite = np.isfinite(back) & np.isfinite(matrix)
     there, back = matrix[finite], back[finite]

@@ -161,3 +161,21 @@ def test_takes_closed_paths_itself() -> None:
     assert SOLVERS["search"].refusal(closed) is None
     best = solve(closed, "brute").cost
     assert solve(closed, "search", StopRule(iterations=500)).cost == pytest.approx(best)
+
+
+@pytest.mark.parametrize("kind", ["matrix", "line"])
+def test_costs_of_nodes_do_not_mislead_reversals(kind: str) -> None:
+    """What a piece costs backwards depends on its nodes' own costs, and on all coordinates."""
+    rng = np.random.default_rng(15)
+    cluster = np.repeat(np.arange(9), 3)
+    own = rng.uniform(0, 2, len(cluster))
+    if kind == "matrix":
+        half = rng.uniform(0, 10, (27, 27))
+        problem = OrderingProblem(cluster, MatrixCosts(half + half.T), node_costs=own)
+    else:
+        a, b = rng.uniform(0, 1, (2, 18, 3))
+        a[1::2], b[1::2] = b[::2], a[::2]
+        b[:, 2] += 1.0  # turned round in the plane, not in space
+        problem = OrderingProblem(np.repeat(np.arange(9), 2), EuclidCosts(a, b))
+    answer = solve(problem, "search", StopRule(iterations=2000))
+    assert answer.cost == pytest.approx(solve(problem, "brute").cost)
