@@ -30,7 +30,8 @@ tests: .venv/.ready
 	$(RUN)pytest -n 2
 
 bench: .venv/.ready
-	$(RUN)python -m benchmarks
+	-$(RUN)python -m benchmarks
+	$(RUN)python -m benchmarks.ordering
 
 format: .venv/.ready
 	$(RUN)ruff check --fix .
