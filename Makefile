@@ -30,6 +30,7 @@ tests: .venv/.ready
 	$(RUN)pytest -n 2
 
 bench: .venv/.ready
+	-$(MAKE) --no-print-directory .peers/.ready
 	-$(RUN)python -m benchmarks
 	$(RUN)python -m benchmarks.ordering
 
@@ -41,7 +42,7 @@ wheel: .venv/.ready
 	$(UV) build --wheel --out-dir dist
 
 clean:
-	rm -rf .venv .tools .mypy_cache .pytest_cache .ruff_cache .hypothesis .numba_cache dist out
+	rm -rf .venv .tools .peers .mypy_cache .pytest_cache .ruff_cache .hypothesis .numba_cache dist out
 
 # a system pip that refuses to install (PEP 668) still fills a folder of ours
 .tools/bin/uv:
@@ -49,4 +50,10 @@ clean:
 
 .venv/.ready: pyproject.toml uv.lock | $(UV)
 	$(UV) sync --frozen --quiet --compile-bytecode
+	@touch $@
+
+# other programs to measure with, in an environment of their own: or-tools and highspy cannot share a process
+.peers/.ready: | $(UV)
+	$(UV) venv --quiet --clear --python python3 .peers
+	$(UV) pip install --quiet --python .peers/bin/python ortools pyvrp
 	@touch $@

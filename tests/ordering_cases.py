@@ -171,3 +171,26 @@ def strokes(count: int, seed: int = 0) -> OrderingProblem:
     b = a + rng.normal(0, 0.1, (count, 2))
     exits, entries = np.stack([b, a], axis=1).reshape(-1, 2), np.stack([a, b], axis=1).reshape(-1, 2)
     return OrderingProblem(np.repeat(np.arange(count), 2), EuclidCosts(exits, entries))
+
+
+def renamed(problem: OrderingProblem, seed: int, factor: float = 1.0) -> OrderingProblem:
+    """The same problem with clusters, nodes and rules listed in another order, and all costs times a factor."""
+    rng = np.random.default_rng(seed)
+    names = rng.permutation(problem.clusters)  # old cluster -> new cluster
+    nodes = rng.permutation(problem.nodes)
+    nodes = nodes[np.argsort(names[problem.cluster[nodes]], kind="stable")]  # new node -> old node
+    old = np.repeat(nodes, problem.nodes), np.tile(nodes, problem.nodes)
+    ways = np.empty(problem.nodes, dtype=np.int64)
+    ways[nodes] = np.arange(problem.nodes)
+    enforced = problem.enforced.copy()
+    enforced[:, 1:] = ways[enforced[:, 1:]]
+    return OrderingProblem(
+        names[problem.cluster[nodes]],
+        MatrixCosts(factor * problem.costs.pairs(*old).reshape(problem.nodes, problem.nodes)),
+        factor * problem.start_costs[nodes],
+        factor * problem.end_costs[nodes],
+        factor * problem.node_costs[nodes],
+        rng.permutation(names[problem.precedence]) if len(problem.precedence) else problem.precedence,
+        enforced,
+        problem.closed,
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from optplan.domain.ordering import EuclidCosts, MatrixCosts, Ordering, Ordering
 from optplan.domain.progress import Progress
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering import SOLVERS, lower_bound, solve
-from tests.ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, strokes
+from tests.ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, renamed, strokes
 
 CASES = list(cases())
 MODELS = {"mtz-lifted", "mtz", "flow", "noon-bean"}
@@ -282,3 +283,53 @@ def test_optimum_of_a_scaled_problem_scales() -> None:
             answer = solve(scaled, name)
             assert answer.status is Status.OPTIMAL
             assert answer.cost == pytest.approx(factor * optimum(problem), rel=1e-6)
+
+
+@pytest.mark.parametrize("solver", [name for name in GENERAL if name not in MODELS])
+@pytest.mark.parametrize("factor", [1e-3, 1.0, 1e4])
+def test_names_and_units_do_not_matter(solver: str, factor: float) -> None:
+    for case in CASES[3::9]:
+        problem = renamed(case.problem, 1, factor)
+        if SOLVERS[solver].refusal(problem):
+            continue
+        answer = solve(problem, solver, StopRule(iterations=200) if solver in SEARCHES else None)
+        judge(problem, answer, factor * case.optimum)
+        if solver in PROVES:
+            assert answer.status is (Status.OPTIMAL if math.isfinite(case.optimum) else Status.INFEASIBLE)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_search_is_below_a_proved_bound(seed: int) -> None:
+    """On problems too large for enumeration: what is found is never cheaper than what is proved, by whomever."""
+    rng = np.random.default_rng(seed)
+    pairs = np.array([(a, b) for a in range(24) for b in range(a + 1, 24) if rng.random() < 0.1 * (seed % 2)])
+    base = strokes(24, seed)
+    problem = OrderingProblem(base.cluster, base.costs, precedence=pairs.reshape(-1, 2).astype(np.int64))
+    problem = renamed(problem, seed, 7.0) if seed >= 2 else problem
+    proved = [solve(problem, name, StopRule(seconds=5)).bound for name in ("cuts", "beam", "dp")]
+    found = [
+        solve(problem, name, StopRule(iterations=500)).cost for name in SEARCHES if not SOLVERS[name].refusal(problem)
+    ]
+    assert max(*proved, lower_bound(problem, StopRule(seconds=2))) <= min(found) * (1 + 1e-9)
+
+
+@EVERY
+def test_a_cancel_is_heard_within_half_a_second(solver: str) -> None:
+    """In the middle of work on a real size; once in three tries, for the machine may be busy."""
+    problem = strokes(24 if solver in MODELS else 40, 1)
+    if reason := SOLVERS[solver].refusal(problem):
+        problem = strokes(12, 1)
+        assert SOLVERS[solver].refusal(problem) is None, reason
+    solve(problem, solver, StopRule(seconds=0.01))  # compiled before it is timed
+    delays = []
+    for _ in range(3):
+        due = time.perf_counter() + 0.3
+
+        def cancelled(due: float = due) -> bool:
+            return time.perf_counter() >= due
+
+        solve(problem, solver, StopRule(cancelled=cancelled, iterations=10**9 if solver in ANYTIME else None))
+        delays.append(time.perf_counter() - due)
+        if delays[-1] < 0.5:
+            return
+    pytest.fail(f"heard after {min(delays):.2f} s")
