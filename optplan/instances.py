@@ -39,3 +39,10 @@ def instance(name: str) -> Path:
         raise InputError(f"there is no instance {name!r}; expected one of {', '.join(instance_names())}")
     file = _folder() / matches[0]
     return next(candidate for suffix in SUFFIXES if (candidate := file.with_suffix(suffix)).exists())
+
+
+def shipped_or_file(source: str | Path) -> Path:
+    """The file itself; where there is none, the shipped instance of that name, with or without its folder."""
+    file = Path(source)
+    names = {short for name in instance_names() for short in (name, name.split("/", 1)[1])}
+    return instance(str(source)) if not file.exists() and str(source) in names else file

@@ -15,6 +15,7 @@ from optplan.compare import Case, Result, compare_solvers, csv_text, load_case, 
 from optplan.compare.runs import verified
 from optplan.domain.errors import InputError
 from optplan.domain.ordering import Status
+from optplan.instances import instance_names
 from optplan.ordering import SOLVERS, solve
 from tests.ordering_cases import cases, strokes
 
@@ -97,3 +98,11 @@ def test_cases_come_from_many_files(tmp_path: Path) -> None:
             load_case(tmp_path / name)
     with pytest.raises(InputError, match="nowhere"):
         load_case("nowhere")
+
+
+@pytest.mark.parametrize("name", [name for name in instance_names() if name.startswith("ordering/")])
+def test_shipped_values_are_optimal(name: str) -> None:
+    case = load_case(name)
+    answer = solve(case.problem, "cuts")
+    assert answer.status is Status.OPTIMAL
+    assert answer.cost == pytest.approx(case.best_known, abs=1e-9)

@@ -90,7 +90,9 @@ def _main(
 
 @app.command("plan")
 def plan_command(
-    job: Annotated[Path, typer.Argument(help="A drawing (.svg, .svgz) or a JSON job.", show_default=False)],
+    job: Annotated[
+        Path, typer.Argument(help="A drawing (.svg), a JSON job, or the name of a shipped one.", show_default=False)
+    ],
     robot: RobotName = None,
     out: Annotated[Path | None, typer.Option("--output", "-o", help="Folder; default: <job>-plan.")] = None,
     export: Annotated[
@@ -125,9 +127,12 @@ def plan_command(
     transit_speed: TransitSpeed = None,
 ) -> None:
     """Plan a job: writes plan.json and a picture, checks the plan and prints the findings."""
+    from optplan.instances import shipped_or_file
+
     flags = dict(locals())
     base = read_config(config)
     options = settings_of(base, flags)
+    job = shipped_or_file(job)
     chosen = robot or base.get("robot") or USUAL_ROBOT
     if print_config:
         print(config_text(options, chosen), end="")
@@ -327,7 +332,10 @@ def cover(
 def order(
     file: Annotated[
         Path,
-        typer.Argument(help="A plan, or an ordering instance (.tsp .atsp .sop .gtsp .pcglns).", show_default=False),
+        typer.Argument(
+            help="A plan, or an ordering instance (.tsp .atsp .sop .gtsp .pcglns, or the name of a shipped one).",
+            show_default=False,
+        ),
     ],
     out: OutFile = None,
     rest: Rest = False,
@@ -344,11 +352,14 @@ def order(
 ) -> None:
     """Order: which stroke after which, entered where."""
     from optplan.cli.ordering import is_instance, order_instance
+    from optplan.instances import shipped_or_file
 
+    flags = dict(locals())
+    file = shipped_or_file(file)
     if is_instance(file):
-        order_instance(file, out, settings_of({}, dict(locals())), force, quiet, json)
+        order_instance(file, out, settings_of({}, flags), force, quiet, json)
     else:
-        _stage("order", file, out, dict(locals()), rest, force, quiet, json)
+        _stage("order", file, out, flags, rest, force, quiet, json)
 
 
 @app.command("compare")

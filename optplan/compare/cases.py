@@ -12,7 +12,7 @@ from optplan.coverage import cover
 from optplan.domain.errors import InputError, located
 from optplan.domain.options import Options
 from optplan.domain.ordering import OrderingProblem
-from optplan.instances import instance, instance_names
+from optplan.instances import shipped_or_file
 from optplan.ordering.circles import DISTANCE, TAU, circle_problem
 from optplan.ordering.tsplib import SUFFIXES, Instance, read_tsplib
 from optplan.problem import ordering_problem, traversals
@@ -53,9 +53,7 @@ def load_case(source: str | Path, robot: str | Path = "beach-rake", options: Opt
     ------
     InputError : no such file or instance, or one that is malformed
     """
-    file = Path(source)
-    if not file.exists() and str(source) in _names():
-        file = instance(str(source))
+    file = shipped_or_file(source)
     if file.suffix.lower() in SUFFIXES:
         library = read_tsplib(file)
         return Case(library.name, library.problem, _best_known(file), library)
@@ -70,11 +68,6 @@ def load_case(source: str | Path, robot: str | Path = "beach-rake", options: Opt
     if "job" in data:
         return Case(file.stem, _of_plan(file))
     return Case(file.stem, _of_job(file, robot, options or Options()))
-
-
-def _names() -> set[str]:
-    names = instance_names()
-    return {*names, *(name.split("/", 1)[1] for name in names)}
 
 
 def _of_job(file: Path, robot: str | Path, options: Options) -> OrderingProblem:
