@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from optplan.avoiding import avoid_finished
 from optplan.connectors.driving import connect
 from optplan.coverage import cover
 from optplan.domain.errors import InputError
@@ -107,7 +108,12 @@ def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> P
     problem = ordering_problem(ways, before.cover, robot, options)
     order = options.order
     rule = stop or StopRule(seconds=order.seconds or math.inf, iterations=order.iterations)
-    ordering = solve(problem, order.solver, rule, order.seed, progress=progress)
+    # what is to be avoided takes the other half of the time
+    first = replace(rule, seconds=rule.seconds / 2) if order.avoid > 0 else rule
+    clock = rule.start()
+    ordering = solve(problem, order.solver, first, order.seed, progress=progress)
+    if order.avoid > 0 and problem.clusters > 1 and math.isfinite(ordering.cost):
+        ordering = avoid_finished(ordering, problem, ways, before.cover, robot, options, clock, progress)
     visits = ways.take(ordering.nodes) if math.isfinite(ordering.cost) else None
     return Plan(job, robot, options, before.cover, ordering, visits)
 

@@ -11,6 +11,7 @@ import typer
 
 from optplan.cli import output
 from optplan.cli.settings import (
+    Avoid,
     Boundary,
     CanvasSize,
     CloseGap,
@@ -122,6 +123,7 @@ def plan_command(
     seed: Seed = None,
     start: Start = None,
     entries: Entries = None,
+    avoid: Avoid = None,
     corner: Corner = None,
     work_speed: WorkSpeed = None,
     transit_speed: TransitSpeed = None,
@@ -349,6 +351,7 @@ def order(
     seed: Seed = None,
     start: Start = None,
     entries: Entries = None,
+    avoid: Avoid = None,
 ) -> None:
     """Order: which stroke after which, entered where."""
     from optplan.cli.ordering import is_instance, order_instance

@@ -54,6 +54,9 @@ Iterations = Annotated[int | None, typer.Option(help="Limit of ordering; with a 
 Seed = Annotated[int | None, typer.Option(help="Of everything random.")]
 Start = Annotated[str | None, typer.Option(help="Where the robot stands: X,Y in metres.")]
 Entries = Annotated[int | None, typer.Option(help="Most entry vertices of a closed stroke.")]
+Avoid = Annotated[
+    float | None, typer.Option("--avoid-finished", help="Metres worth a metre not driven over finished work.")
+]
 Corner = Annotated[str | None, typer.Option(help="Sharper vertices are corners, degrees.")]
 WorkSpeed = Annotated[str | None, typer.Option(help="With the tool down, m/s.")]
 TransitSpeed = Annotated[str | None, typer.Option(help="With the tool up, m/s.")]
@@ -72,6 +75,7 @@ _PLACES = {
     "iterations": ("order", "iterations"),
     "seed": ("order", "seed"),
     "entries": ("order", "entries"),
+    "avoid": ("order", "avoid"),
     "corner": ("connect", "corner"),
     "work_speed": ("time", "work_speed"),
     "transit_speed": ("time", "transit_speed"),

@@ -100,7 +100,7 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
             pieces = driven(stroke, visit.entry_vertex, visit.reverse, robot, options)
             there = np.array([*pieces.start[0], pieces.heading[0]])
         if here is not None:
-            rows.add(_connector(here, there, metric, radius, turns), RAISED, -1)
+            rows.add(connector(here, there, metric, radius, turns), RAISED, -1)
         # pins that stay down while the robot turns sharply would draw a swirl
         sharp = (pieces.length == 0) & (np.abs(pieces.turn) > options.connect.corner) & turns
         tool = np.where(sharp, RAISED, stroke.tool)
@@ -111,7 +111,8 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     return _path(rows)
 
 
-def _connector(here: FloatArray, there: FloatArray, metric: str, radius: float, turns: bool) -> Pieces:
+def connector(here: FloatArray, there: FloatArray, metric: str, radius: float, turns: bool) -> Pieces:
+    """The movement between two states (3,) x, y, heading; `turns`: with the turns on the spot at both ends."""
     if metric == "dubins":
         return _dubins(here, there, radius)
     dx, dy = there[:2] - here[:2]

@@ -76,6 +76,7 @@ class OrderOptions:
     start : (x, y) m where the robot stands, or None for the drawing's own start point, or a free choice
     entries : greatest number of vertices at which a closed stroke may be entered; None: every vertex, or 16 where
         headings count
+    avoid : m between strokes that are worth a metre not driven over finished work; 0: finished work is no matter
     """
 
     solver: str = "auto"
@@ -85,8 +86,11 @@ class OrderOptions:
     seed: int = 0
     start: tuple[float, float] | None = None
     entries: int | None = None
+    avoid: float = 0.0
 
     def __post_init__(self) -> None:
+        if isinstance(self.avoid, bool) or not 0 <= self.avoid <= MAX_NUMBER:
+            raise InputError(f"order avoid is {self.avoid}; expected a number from 0 to {MAX_NUMBER:g}")
         if self.metric not in METRICS:
             raise InputError(f"there is no metric {self.metric!r}; expected one of {', '.join(METRICS)}")
         _above_zero("order", seconds=self.seconds)
