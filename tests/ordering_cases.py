@@ -15,7 +15,7 @@ from optplan.domain.ordering import DubinsCosts, EuclidCosts, MatrixCosts, Order
 
 
 def dubins_batch(starts: FloatArray, ends: FloatArray, radius: float) -> FloatArray:
-    from optplan.geometry._kernels import dubins_length
+    from optplan.geometry._kernels.dubins import dubins_length
 
     length: Any = dubins_length
     rows = zip(starts.tolist(), ends.tolist(), strict=True)

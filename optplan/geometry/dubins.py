@@ -37,7 +37,7 @@ def dubins_path(start: FloatArray, end: FloatArray, radius: float) -> DubinsPath
     ------
     InputError : a radius that is not above 0, or a state that is not finite
     """
-    from optplan.geometry._kernels import dubins_shortest
+    from optplan.geometry._kernels.dubins import dubins_shortest
 
     _checked(start, end, radius)
     x0, y0, t0 = map(float, start)
@@ -50,7 +50,7 @@ def dubins_path(start: FloatArray, end: FloatArray, radius: float) -> DubinsPath
 
 def dubins_lengths(starts: FloatArray, ends: FloatArray, radius: float) -> FloatArray:
     """Lengths (k,) m of shortest paths between rows x, y, heading of (k, 3) arrays. Raises like `dubins_path`."""
-    from optplan.geometry import _kernels
+    from optplan.geometry._kernels import dubins as _kernels
 
     _checked(starts, ends, radius)
     lengths: FloatArray = _kernels.dubins_lengths(

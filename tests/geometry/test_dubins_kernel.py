@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from optplan.geometry._kernels import dubins_length
+from optplan.geometry._kernels.dubins import dubins_length
 
 TAU = 2 * math.pi
 Pose = tuple[float, float, float]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray, IntArray
-from optplan.geometry._kernels import dubins_length
+from optplan.geometry._kernels.dubins import dubins_length
 
 
 class Costs(NamedTuple):

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray, IntArray
-from optplan.geometry._kernels import dubins_length
+from optplan.geometry._kernels.dubins import dubins_length
 
 
 class Graph(NamedTuple):
