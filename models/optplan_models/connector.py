@@ -31,8 +31,9 @@ TOLERANCE = 1e-9
 REACHED = 1e-6
 """m and rad: an end that is missed by more is no solution."""
 _NODES, _WEIGHTS = (0.5 * (1 + x) if k == 0 else 0.5 * x for k, x in enumerate(np.polynomial.legendre.leggauss(4)))
-STATE, CONTROL = 5, 2
-"""x, y, heading, curvature, length; rate of the curvature as a share of its limit, pace over that at top speed."""
+_FINE, _FINE_WEIGHTS = np.polynomial.legendre.leggauss(10)
+STATE = 5
+"""x, y, heading, curvature, length."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +138,7 @@ def optimise(
     with_planes = planes is not None
 
     program = _program(intervals, objective, with_planes, solver)
-    guessed = program.pack(states, np.column_stack([rates, np.ones(intervals)]))
+    guessed = program.pack(states, np.column_stack([rates, np.ones(intervals)])[:, : program.controls])
     parameters = np.concatenate([[start[3] / scale, rate], goal, slow, gates.ravel() if with_planes else []])
     lower, upper = program.bounds(min(scale * length_limit, 1e6))
     answer = program.solver(x0=guessed, p=parameters, lbx=lower, ubx=upper, lbg=program.least, ubg=program.most)
@@ -222,11 +223,10 @@ def _resample(guess: tuple[Floats, Floats, Floats], scale: float, intervals: int
 
 def _missed(kappa: Floats, rates: Floats, step: float, goal: Floats, scale: float) -> float:
     """How far the chain of clothoids ends from the goal, m or rad, by a finer rule than the model's."""
-    nodes, weights = np.polynomial.legendre.leggauss(10)
-    u = step * (1 + nodes) / 2
+    u = step * (1 + _FINE) / 2
     begin = np.concatenate([[0.0], np.cumsum(step * (kappa[:-1] + step * rates / 2))])
     angle = begin[:-1, None] + u * (kappa[:-1, None] + rates[:, None] * u / 2)
-    x, y = (step / 2 * (f(angle) @ weights).sum() for f in (np.cos, np.sin))
+    x, y = (step / 2 * (f(angle) @ _FINE_WEIGHTS).sum() for f in (np.cos, np.sin))
     away = math.hypot(x - goal[0], y - goal[1]) / scale
     return float(max(away, abs(begin[-1] - goal[2]), abs(kappa[-1] - goal[3])))
 
@@ -239,23 +239,25 @@ class _Program:
     least: Floats
     most: Floats
     intervals: int
+    controls: int
+    """1: the rate of the curvature as a share of its limit; 2: and the pace as a multiple of that at top speed."""
 
     def pack(self, states: Floats, controls: Floats) -> Floats:
         stages = np.column_stack([states[:-1], controls])
         return np.concatenate([stages.ravel(), states[-1]])
 
     def unpack(self, values: Floats) -> tuple[Floats, Floats]:
-        stages = values[:-STATE].reshape(self.intervals, STATE + CONTROL)
+        stages = values[:-STATE].reshape(self.intervals, STATE + self.controls)
         return np.vstack([stages[:, :STATE], values[-STATE:]]), stages[:, STATE:]
 
     def bounds(self, longest: float) -> tuple[Floats, Floats]:
         """Of all variables; longest : of the scaled length."""
         states = np.full((self.intervals + 1, STATE), math.inf)
         states[:, 3], states[:, 4] = 1.0, longest
-        upper = self.pack(states, np.tile([1.0, math.inf], (self.intervals, 1)))
+        upper = self.pack(states, np.tile([1.0, math.inf][: self.controls], (self.intervals, 1)))
         states[:, 4] = -1e-6  # the length is above 0 wherever that is possible
-        lower = -self.pack(states, np.tile([1.0, math.inf], (self.intervals, 1)))
-        lower.reshape(-1)[STATE - 1 :: STATE + CONTROL] = 1e-6
+        lower = -self.pack(states, np.tile([1.0, math.inf][: self.controls], (self.intervals, 1)))
+        lower.reshape(-1)[STATE - 1 :: STATE + self.controls] = 1e-6
         return lower, upper
 
 
@@ -264,11 +266,12 @@ def _program(intervals: int, objective: Objective, planes: bool, solver: str) ->
     """The problem for a grid, built once."""
     import casadi as ca
 
+    controls = 2 if objective == "time" else 1
     start, rate = ca.MX.sym("k0"), ca.MX.sym("rate")
     goal, slow = ca.MX.sym("goal", 4), ca.MX.sym("slow", 3)
     gates = ca.MX.sym("gates", 3 * PLANES * (intervals + 1)) if planes else ca.MX(0, 1)
-    step = _interval(ca, intervals)
-    cost_of = _stage_cost(ca, objective, intervals)
+    step = _interval(ca, intervals, controls)
+    cost_of = _stage_cost(ca, objective, intervals, controls)
 
     variables, constraints, equal, least, most = [], [], [], [], []
 
@@ -286,7 +289,7 @@ def _program(intervals: int, objective: Objective, planes: bool, solver: str) ->
         variables.append(state)
         here = state
         if not last:
-            control = ca.MX.sym(f"u{k}", CONTROL)
+            control = ca.MX.sym(f"u{k}", controls)
             variables.append(control)
             state = ca.MX.sym(f"x{k + 1}", STATE)
             # gaps first, then what holds at the stage: fatrop finds its structure by this order
@@ -301,8 +304,6 @@ def _program(intervals: int, objective: Objective, planes: bool, solver: str) ->
             ask(control[1] - slow[0], 0.0, math.inf)
             ask(control[1] - slow[1] - slow[2] * here[3], 0.0, math.inf)
             ask(control[1] - slow[1] + slow[2] * here[3], 0.0, math.inf)
-        else:
-            ask(control[1] - 1.0, 0.0, 0.0)
         if planes and 0 < k < intervals:
             for h in range(PLANES):
                 a = gates[3 * (PLANES * k + h) : 3 * (PLANES * k + h) + 3]
@@ -319,12 +320,14 @@ def _program(intervals: int, objective: Objective, planes: bool, solver: str) ->
         options["fatrop"] = {"print_level": 0, "tol": TOLERANCE, "max_iter": 300}
     else:
         options["ipopt"] = {"print_level": 0, "sb": "yes", "tol": TOLERANCE, "max_iter": 500}
-    return _Program(ca.nlpsol("connector", solver, problem, options), np.array(least), np.array(most), intervals)
+    return _Program(
+        ca.nlpsol("connector", solver, problem, options), np.array(least), np.array(most), intervals, controls
+    )
 
 
-def _interval(ca: Any, intervals: int) -> Any:
+def _interval(ca: Any, intervals: int, controls: int) -> Any:
     """The state after an interval, from the state before and the controls."""
-    x, u, rate = ca.SX.sym("x", STATE), ca.SX.sym("u", CONTROL), ca.SX.sym("rate")
+    x, u, rate = ca.SX.sym("x", STATE), ca.SX.sym("u", controls), ca.SX.sym("rate")
     h, bend = x[4] / intervals, rate * u[0]
     dx = dy = 0
     for node, weight in zip(_NODES, _WEIGHTS, strict=True):
@@ -335,13 +338,12 @@ def _interval(ca: Any, intervals: int) -> Any:
     return ca.Function("interval", [x, u, rate], [after])
 
 
-def _stage_cost(ca: Any, objective: Objective, intervals: int) -> Any:
-    x, u, rate = ca.SX.sym("x", STATE), ca.SX.sym("u", CONTROL), ca.SX.sym("rate")
+def _stage_cost(ca: Any, objective: Objective, intervals: int, controls: int) -> Any:
+    x, u, rate = ca.SX.sym("x", STATE), ca.SX.sym("u", controls), ca.SX.sym("rate")
     h = x[4] / intervals
     end = x[3] + rate * u[0] * h
-    cost = {
-        "length": h,
-        "time": h * u[1],
-        "effort": h * (x[3] ** 2 + x[3] * end + end**2) / 3,  # exact: the curvature is linear
-    }[objective]
+    if objective == "effort":
+        cost = h * (x[3] ** 2 + x[3] * end + end**2) / 3  # exact: the curvature is linear
+    else:
+        cost = h * u[1] if objective == "time" else h
     return ca.Function("cost", [x, u, rate], [cost])
