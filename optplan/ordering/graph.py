@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +12,7 @@ from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.costs import DubinsCosts, EuclidCosts
 from optplan.domain.ordering import OrderingProblem
 from optplan.ordering.arrays import DENSE_DUBINS, DENSE_NODES, dense_costs, fixed, grouped, partners
+from optplan.ordering.duals import reduced_costs
 from optplan.ordering.near import nearest_clusters
 
 if TYPE_CHECKING:
@@ -25,14 +27,14 @@ ROUGH = 0.35
 BoolArray = npt.NDArray[np.bool_]
 
 
-def circular_graph(problem: OrderingProblem, anchor: int | None) -> Graph:
-    """The graph for the kernels.
+def circular_graph(problem: OrderingProblem, anchor: int | None, stop: Callable[[], object]) -> Graph:
+    """The graph for the kernels. When `stop` says so while it is made, near lists may be worse.
 
     An open path gets a depot as a cluster of its own, with the last number; a closed one begins with cluster `anchor`.
     Costs of the first and the last node are added to the arcs from and to the anchor, node costs to all arcs into a
     node.
     """
-    from optplan.ordering._kernels.tour import Graph
+    from optplan.ordering._kernels.tour import EXACT, MIRROR, Graph
 
     count = problem.clusters
     first = problem.first_node.astype(np.int64)
@@ -57,11 +59,19 @@ def circular_graph(problem: OrderingProblem, anchor: int | None) -> Graph:
         int(sizes.argmin()),
         0 if problem.nodes == count else int((sizes * np.roll(sizes, 1)).sum()) * int(sizes.min()),
     )
+    if distant:
+        near = _near_placed(problem, size)
+    else:
+        arcs = _cheapest(data, first, forbidden)
+        # where both directions cost the same, assignments are pairs back and forth and their prices say little;
+        # where all clusters are near, prices would leave out none
+        plain = flags[MIRROR] == EXACT or size - 1 <= NEAR
+        near = _nearest(arcs if plain else reduced_costs(arcs, stop))
     return Graph(
         float(problem.costs.radius) if isinstance(problem.costs, DubinsCosts) else 0.0,
         fixed(data),
         fixed(first),
-        fixed(_near_placed(problem, size) if distant else _near_dense(data, first, forbidden)),
+        fixed(near),
         fixed(grouped(pairs[:, 1], pairs[:, 0], size)),
         fixed(grouped(pairs[:, 0], pairs[:, 1], size)),
         fixed(partner),
@@ -162,14 +172,19 @@ def _topological(direct: BoolArray) -> list[int]:
     return order
 
 
-def _near_dense(data: FloatArray, first: IntArray, forbidden: BoolArray | None) -> IntArray:
-    """(2, m, k) nearest successors and predecessors by their cheapest arc."""
-    size = len(first) - 1
+def _cheapest(data: FloatArray, first: IntArray, forbidden: BoolArray | None) -> FloatArray:
+    """(m, m) the cheapest arc from cluster to cluster, infinite where precedence allows none."""
     arcs = np.minimum.reduceat(np.minimum.reduceat(data, first[:-1], axis=0), first[:-1], axis=1)
     if forbidden is not None:
         count = len(forbidden)
         arcs[:count, :count][forbidden] = np.inf
     np.fill_diagonal(arcs, np.inf)
+    return arcs
+
+
+def _nearest(arcs: FloatArray) -> IntArray:
+    """(2, m, k) the successors and predecessors to which arcs cost least."""
+    size = len(arcs)
     wanted = min(NEAR, size - 1)
     near = np.empty((2, size, wanted), dtype=np.int64)
     # equally near ones in random order, else the same few would be everyone's neighbours

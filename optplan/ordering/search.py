@@ -86,7 +86,7 @@ def _anneal(run: Run, anchor: int | None) -> StopReason:
         return stopped
     if anchor is not None:
         start = np.roll(start, -int(np.flatnonzero(run.problem.cluster[start] == anchor)[0]))
-    graph = circular_graph(run.problem, anchor)
+    graph = circular_graph(run.problem, anchor, run.stop)
     state = _state(graph, run.problem.cluster[start], start, run.seed)
     limit = run.rule.iterations
     timed = limit is None and math.isfinite(run.rule.seconds)
