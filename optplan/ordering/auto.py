@@ -19,8 +19,9 @@ BRUTE_SPEED = 3e8
 """Transitions of the subset programme in a second, cautiously."""
 DENSE = 0.1
 """Share of the pairs of clusters that precedence has to order for the programme over order ideals to be the first."""
-SMALL = 150
-"""Up to this many clusters cutting planes often prove the optimum."""
+SMALL, DIRECTED = 150, 300
+"""Up to this many clusters cutting planes often prove the optimum; of directed problems, whose bounds are better,
+more than of others."""
 CUT_CLUSTERS = 500
 """Up to this many they are worth their time as a bound."""
 PROOF_SECONDS = 10.0
@@ -52,7 +53,7 @@ def choose_and_solve(run: Run) -> StopReason:
     run.message = f"search and a bound: {size} are too many to prove the optimum"
     if proofs:
         run.message = f"search, then {' and '.join(proof.name for proof in proofs)} to prove it: {size}"
-    share = LONG if not proofs else SHORT if run.problem.clusters <= SMALL or IDEALS in proofs else EVEN
+    share = LONG if not proofs else SHORT if run.problem.clusters <= _small(run.problem) or IDEALS in proofs else EVEN
     stop = _searched(run, share, BEFORE_PROOF * run.problem.clusters if proofs else math.inf)
     if ended := _over(run, stop):
         return ended
@@ -85,6 +86,12 @@ def _proofs(problem: OrderingProblem) -> list[Method]:
     if count <= CUT_CLUSTERS and CUTS.refusal(problem) is None:
         found.append(CUTS)
     return found
+
+
+def _small(problem: OrderingProblem) -> int:
+    from optplan.ordering.cutting.undirected import undirected_form
+
+    return SMALL if undirected_form(problem) is not None else DIRECTED
 
 
 def _over(run: Run, stop: StopReason) -> StopReason | None:

@@ -34,7 +34,7 @@ def circular_graph(problem: OrderingProblem, anchor: int | None, stop: Callable[
     Costs of the first and the last node are added to the arcs from and to the anchor, node costs to all arcs into a
     node.
     """
-    from optplan.ordering._kernels.tour import EXACT, MIRROR, Graph
+    from optplan.ordering._kernels.tour import MIRROR, Graph
 
     count = problem.clusters
     first = problem.first_node.astype(np.int64)
@@ -63,9 +63,9 @@ def circular_graph(problem: OrderingProblem, anchor: int | None, stop: Callable[
         near = _near_placed(problem, size)
     else:
         arcs = _cheapest(data, first, forbidden)
-        # where both directions cost the same, assignments are pairs back and forth and their prices say little;
+        # where both directions cost about the same, assignments are pairs back and forth and their prices say little;
         # where all clusters are near, prices would leave out none
-        plain = flags[MIRROR] == EXACT or size - 1 <= NEAR
+        plain = flags[MIRROR] != 0 or size - 1 <= NEAR
         near = _nearest(arcs if plain else reduced_costs(arcs, stop))
     return Graph(
         float(problem.costs.radius) if isinstance(problem.costs, DubinsCosts) else 0.0,
