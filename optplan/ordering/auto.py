@@ -7,7 +7,7 @@ import math
 from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering.bounds import tree_bound
-from optplan.ordering.cuts import refuse_no_form, solve_by_cuts
+from optplan.ordering.cuts import prove_by_cuts, refuse_no_form
 from optplan.ordering.ideals import prove_by_ideals, refuse_loose_precedence
 from optplan.ordering.ideals_network import closure
 from optplan.ordering.method import OPTIMAL_GAP, Method, Run
@@ -34,7 +34,7 @@ BOUND_SHARE = 0.1
 
 BRUTE = Method("brute", "", subset_programme)
 IDEALS = Method("dp", "", prove_by_ideals, refuse_loose_precedence)
-CUTS = Method("cuts", "", solve_by_cuts, refuse_no_form, closed=True)
+CUTS = Method("cuts", "", prove_by_cuts, refuse_no_form, closed=True)
 
 
 def choose_and_solve(run: Run) -> StopReason:

@@ -28,6 +28,12 @@ def solve_by_cuts(run: Run) -> StopReason:
     return solve_directed(run) if form is None else solve_undirected(run, form)
 
 
+def prove_by_cuts(run: Run) -> StopReason:
+    """The same after a search: where a path is known, all the time goes to the proof."""
+    form = undirected_form(run.problem)
+    return solve_directed(run) if form is None else solve_undirected(run, form, search_first=False)
+
+
 def lower_bound(problem: OrderingProblem, stop: StopRule | RunningStop | None = None) -> float:
     """The best lower bound that 1-trees and cutting planes give in the time there is; valid for the whole problem.
 

@@ -20,7 +20,7 @@ from optplan.ordering._kernels.mincut import cheap_edges, cut_tree_sets, subtour
 from optplan.ordering.cutting.lp import Solution
 from optplan.ordering.cutting.undirected import Undirected, undirected_form
 from optplan.ordering.cutting.undirected_branch import branch_and_cut, useful_edges
-from optplan.ordering.cutting.undirected_cuts import violated_blossoms
+from optplan.ordering.cutting.undirected_cuts import violated_blossoms, violated_sets
 from optplan.ordering.cutting.undirected_lp import CutProgramme, pair_numbers
 from optplan.ordering.cutting.undirected_root import Root, first_edges
 from optplan.ordering.cutting.undirected_solve import undirected_bound
@@ -214,6 +214,25 @@ def test_blossoms_hold_for_tours() -> None:
             assert inside.all(axis=1).sum() - 0.5 * half + used <= cut.right + 1e-9
 
 
+@pytest.mark.parametrize("most", [1, 3])
+def test_a_limit_leaves_some_of_the_violated_sets(most: int) -> None:
+    form = form_of(drawing(30, 0))
+    rng = np.random.default_rng(0)
+    for _ in range(10):
+        # rings of a few clusters each: every one lacks links to the others
+        rings = np.array_split(rng.permutation(form.clusters), 5)
+        points = np.searchsorted(form.cluster, np.arange(form.clusters))
+        leaves = form.mate[points]
+        edges = np.concatenate([np.column_stack([leaves[ring], points[np.roll(ring, -1)]]) for ring in rings])
+        weights = np.ones(len(edges))
+        found = violated_sets(form, edges, weights, most)
+        assert found
+        everything = {members.tobytes() for members in violated_sets(form, edges, weights)}
+        assert {members.tobytes() for members in found} <= everything
+        shared = np.bincount(np.concatenate([np.unique(form.cluster[members]) for members in found]))
+        assert shared.max() <= most
+
+
 def test_minimum_cuts_against_all_sets() -> None:
     for seed in range(20):
         rng = np.random.default_rng(seed)
@@ -227,7 +246,7 @@ def test_minimum_cuts_against_all_sets() -> None:
         assert least == pytest.approx(cut.min(), abs=1e-6)
         cluster = np.arange(count) // 2
         others = np.arange(1, cluster.max() + 1)
-        found = subtour_sets(count, pairs[:, 0].copy(), pairs[:, 1].copy(), weights, cluster, others, 0)
+        found = subtour_sets(count, pairs[:, 0].copy(), pairs[:, 1].copy(), weights, cluster, others, 0, count)
         for c in others.tolist():
             fits = (sides[:, cluster == c] == 1).all(axis=1) & (sides[:, cluster == 0] == 0).all(axis=1)
             mine = found[found[:, -1] == c]

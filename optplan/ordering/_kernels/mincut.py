@@ -21,6 +21,7 @@ def subtour_sets(
     cluster: IntArray,
     clusters: IntArray,
     root: int,
+    most: int,
 ) -> IntArray:
     """Sets that hold a whole cluster, not the root, and that the graph leaves with a weight below 2.
 
@@ -30,6 +31,7 @@ def subtour_sets(
     cluster : (n,) of each vertex
     clusters : (c,) clusters to look at: the least cut between each and the root cluster
     root : cluster that the sets stay outside of
+    most : clusters that are in so many small sets already are not looked at
 
     Returns
     -------
@@ -49,7 +51,11 @@ def subtour_sets(
     found = 0
     side = np.empty(count + 2, dtype=np.int64)
     closed = np.zeros(count + 2, dtype=np.int64)
+    covered = np.zeros(len(size), dtype=np.int64)
+    last = np.full(len(size), -1, dtype=np.int64)
     for c in clusters:
+        if covered[c] >= most:
+            continue
         k = edges
         for v in range(count):
             if cluster[v] == c:
@@ -74,6 +80,11 @@ def subtour_sets(
             far += sets[found + 1, v]
         sets[found, count] = c
         sets[found + 1, count] = c
+        if 2 * near < count:
+            for v in range(count):
+                if sets[found, v] == 1 and last[cluster[v]] != found:
+                    last[cluster[v]] = found
+                    covered[cluster[v]] += 1
         found += 1 if near == far else 2
     return sets[:found]
 

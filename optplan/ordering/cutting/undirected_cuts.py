@@ -10,6 +10,8 @@ from optplan.ordering.cutting.undirected_lp import pair_numbers
 
 USED = 1e-7
 """An edge with less than this is not there."""
+UNLIMITED = 2**31
+"""Sets that a cluster may be in."""
 BLOSSOMS = 40
 """Most blossoms at a time."""
 BLOSSOM_VIOLATION = 0.02
@@ -17,7 +19,7 @@ BLOSSOM_CLUSTERS = 1500
 """Most clusters for blossoms: their duals are kept by pairs of clusters (18 MB)."""
 
 
-def violated_sets(form: Undirected, edges: IntArray, weights: FloatArray) -> list[IntArray]:
+def violated_sets(form: Undirected, edges: IntArray, weights: FloatArray, most: int = UNLIMITED) -> list[IntArray]:
     """Sets of points whose cut x(delta(S)) >= 2 is violated; at least one if there is any.
 
     They come from the least cuts between one cluster, the root, and each other. When the root uses one point only,
@@ -28,6 +30,7 @@ def violated_sets(form: Undirected, edges: IntArray, weights: FloatArray) -> lis
     ----------
     form : of the problem
     edges (k, 2), weights (k,) : how far they are used; every cluster has two links
+    most : sets that a cluster may be in, the smallest first
     """
     from optplan.ordering._kernels.mincut import subtour_sets
 
@@ -41,7 +44,7 @@ def violated_sets(form: Undirected, edges: IntArray, weights: FloatArray) -> lis
     found = np.zeros((0, len(points) + 1), dtype=np.int64)
     for k, root in enumerate(order.tolist()):
         tails, heads = numbered[:, 0], numbered[:, 1]
-        found = subtour_sets(len(points), tails, heads, weights[used], cluster, order[k + 1 :], root)
+        found = subtour_sets(len(points), tails, heads, weights[used], cluster, order[k + 1 :], root, most)
         if len(found) or in_support[root] == 1:
             break
     sets: dict[bytes, IntArray] = {}
@@ -55,7 +58,19 @@ def violated_sets(form: Undirected, edges: IntArray, weights: FloatArray) -> lis
         if 2 * members.sum() > form.points:
             members = ~members
         sets[members.tobytes()] = np.flatnonzero(members)
-    return list(sets.values())
+    return list(sets.values()) if most == UNLIMITED else _smallest(form, list(sets.values()), most)
+
+
+def _smallest(form: Undirected, sets: list[IntArray], most: int) -> list[IntArray]:
+    """The smallest sets, whose rows are sparse, without those of a cluster that is in so many others."""
+    seen = np.zeros(form.clusters, dtype=np.int64)
+    kept = []
+    for members in sorted(sets, key=len):
+        clusters = np.unique(form.cluster[members])
+        if seen[clusters].max() < most:
+            seen[clusters] += 1
+            kept.append(members)
+    return kept
 
 
 def violated_blossoms(form: Undirected, edges: IntArray, weights: FloatArray) -> tuple[list[IntArray], list[IntArray]]:

@@ -12,7 +12,7 @@ import numpy as np
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.ordering.cutting.lp import Solution
 from optplan.ordering.cutting.undirected import Undirected
-from optplan.ordering.cutting.undirected_cuts import violated_blossoms, violated_sets
+from optplan.ordering.cutting.undirected_cuts import UNLIMITED, violated_blossoms, violated_sets
 from optplan.ordering.cutting.undirected_lp import CutProgramme, Priced
 
 NEAREST = 3
@@ -34,6 +34,9 @@ STALL = 0.002
 """The loop ends when so many rounds close less than this part of the gap."""
 MIX = 0.5
 """Cuts are looked for half-way between the point and the known tour, where those found are deeper."""
+MANY_CLUSTERS, COVER = 200, 10
+"""Of more clusters, each takes part in so many of a round's subtour cuts: the programme stays sparse and fast, in more
+rounds than there is time for anyway."""
 ROUNDING = 1e-7
 TINY = 1e-9
 
@@ -115,10 +118,11 @@ class Root:
 
     def _sets(self, solution: Solution, tour: FloatArray) -> list[IntArray]:
         form, edges = self.programme.form, self.programme.edges
+        most = COVER if form.clusters > MANY_CLUSTERS else UNLIMITED
         sets: list[IntArray] = []
         if len(self.tour):
-            sets = violated_sets(form, edges, MIX * solution.primal + (1.0 - MIX) * tour)
-        return sets or violated_sets(form, edges, solution.primal)
+            sets = violated_sets(form, edges, MIX * solution.primal + (1.0 - MIX) * tour, most)
+        return sets or violated_sets(form, edges, solution.primal, most)
 
     def _stalls(self, history: list[float]) -> bool:
         if len(history) <= STALL_ROUNDS:

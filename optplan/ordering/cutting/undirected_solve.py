@@ -23,12 +23,12 @@ from optplan.ordering.search import search
 SEARCH = Method("search", "for a tour to begin with", search, closed=True)
 SEARCH_SHARE = 0.2
 """Of the time, for a tour to begin with."""
-SEARCH_EACH = 200
+SEARCH_EACH = 50
 """Iterations of the search for each cluster."""
 NO_TOUR = np.zeros((0, 2), dtype=np.int64)
 
 
-def solve_undirected(run: Run, form: Undirected, *, branch: bool = True) -> StopReason:
+def solve_undirected(run: Run, form: Undirected, *, branch: bool = True, search_first: bool = True) -> StopReason:
     """Prove the optimum, or give incumbent and bound; the bound is one of the complete problem at any time.
 
     After Fischetti, Salazar Gonzalez and Toth ("A branch-and-cut algorithm for the symmetric generalized traveling
@@ -39,7 +39,22 @@ def solve_undirected(run: Run, form: Undirected, *, branch: bool = True) -> Stop
     run : of a problem without enforced connections
     form : of the same problem (`undirected_form`)
     branch : False for the bound of the cut loop alone
+    search_first : False when the path that is known comes from a search
     """
+    if search_first or not len(run.nodes):
+        _search(run)
+    if (stop := run.stop()) and stop is not StopReason.ITERATIONS:
+        return stop
+    tour = form.edges_of(run.nodes) if len(run.nodes) else NO_TOUR
+    if not len(tour) and form.points > ALL_POINTS:
+        run.message = "no path is known: the cut loop has nothing to begin with"
+        return run.stop() or StopReason.FINISHED
+    until = time.time() + run.clock.remaining
+    return prove_in_child(run, f"{__name__}:prove", form, tour, until, run.seed, branch)
+
+
+def _search(run: Run) -> None:
+    """Find a tour to begin with, or a better one."""
     problem, rule = run.problem, run.rule
     most = SEARCH_EACH * problem.clusters
     limits = replace(
@@ -51,14 +66,6 @@ def solve_undirected(run: Run, form: Undirected, *, branch: bool = True) -> Stop
     run.iterations += answer.iterations
     if len(answer.nodes):
         run.offer(answer.nodes)
-    if (stop := run.stop()) and stop is not StopReason.ITERATIONS:
-        return stop
-    tour = form.edges_of(run.nodes) if len(run.nodes) else NO_TOUR
-    if not len(tour) and form.points > ALL_POINTS:
-        run.message = "no path is known: the cut loop has nothing to begin with"
-        return run.stop() or StopReason.FINISHED
-    until = time.time() + run.clock.remaining
-    return prove_in_child(run, f"{__name__}:prove", form, tour, until, run.seed, branch)
 
 
 def undirected_bound(problem: OrderingProblem, stop: StopRule | RunningStop | None = None) -> float:
