@@ -111,7 +111,7 @@ def _gauss(theta: float, kappa: float, sigma: float, length: float) -> tuple[flo
 
 @njit("UniTuple(float64, 2)(float64, float64, float64)", cache=True, nogil=True)
 def _rest(theta: float, kappa: float, sigma: float) -> tuple[float, float]:
-    """Displacement from a point far from the inflection to the infinite end of the spiral (kappa, sigma of one sign)."""
+    """From a point far from the inflection to the infinite end of the spiral (kappa and sigma of one sign)."""
     f, g = _ratios(abs(sigma) / (kappa * kappa))
     # the integral from t on is (f + i g) i exp(i heading), scaled by 1 / kappa
     f /= kappa
