@@ -51,7 +51,9 @@ def middle_table(s: float, table: FloatArray) -> FloatArray:
     return rows
 
 
-@njit("void(float64[:, ::1], int64, int64, float64, float64, float64, float64, float64, float64)", cache=True, nogil=True)
+@njit(
+    "void(float64[:, ::1], int64, int64, float64, float64, float64, float64, float64, float64)", cache=True, nogil=True
+)
 def _keep(
     best: FloatArray, row: int, kind: int, d1: float, d2: float, t1: float, m: float, t2: float, length: float
 ) -> None:
@@ -71,10 +73,22 @@ def _extended(t: float, s: float) -> float:
     return (t * t if t < 1.0 else 2.0 * t - 1.0) / s
 
 
-@njit("void(float64, float64, float64, float64, float64, float64, float64, float64[:, ::1], float64[:, ::1], "
-    "float64[:, ::1])", cache=True, nogil=True)
+@njit(
+    "void(float64, float64, float64, float64, float64, float64, float64, float64[:, ::1], float64[:, ::1], "
+    "float64[:, ::1])",
+    cache=True,
+    nogil=True,
+)
 def _three_turns(
-    x: float, y: float, theta: float, a: float, b: float, s: float, d: float, table: FloatArray, middles: FloatArray,
+    x: float,
+    y: float,
+    theta: float,
+    a: float,
+    b: float,
+    s: float,
+    d: float,
+    table: FloatArray,
+    middles: FloatArray,
     best: FloatArray,
 ) -> None:
     """CCC words from circles at the limit: the middle must span their centres."""
@@ -137,10 +151,20 @@ def _three_turns(
                     _keep(best, row, CCC, d, d, u1, um, u2, length)
 
 
-@njit("void(float64, float64, float64, float64, float64, float64, float64[:, ::1], float64[:, ::1], float64[:, ::1])",
-    cache=True, nogil=True)
+@njit(
+    "void(float64, float64, float64, float64, float64, float64, float64[:, ::1], float64[:, ::1], float64[:, ::1])",
+    cache=True,
+    nogil=True,
+)
 def full_words(
-    x: float, y: float, theta: float, a: float, b: float, s: float, table: FloatArray, middles: FloatArray,
+    x: float,
+    y: float,
+    theta: float,
+    a: float,
+    b: float,
+    s: float,
+    table: FloatArray,
+    middles: FloatArray,
     best: FloatArray,
 ) -> None:
     """Fills rows length, kind, d1, d2, t1, m, t2 of the shortest LSL, RSR, LSR, RSL, LRL, RLR (6, 7); inf: none.
@@ -179,7 +203,9 @@ def full_words(
                     if row < 2 and m < 1e-6:
                         # a line that would be driven backwards: a valley above 0 takes its place
                         dip = max(-0.95, 0.5 * s * m)
-                        good, u1, um, u2, length = newton(CCC, d1, d1, t1, dip, t2, a, b, s, x, y, theta, table, math.inf)
+                        good, u1, um, u2, length = newton(
+                            CCC, d1, d1, t1, dip, t2, a, b, s, x, y, theta, table, math.inf
+                        )
                         if good:
                             _keep(best, 4 + row, CCC, d1, d1, u1, um, u2, length)
     for row in range(2):

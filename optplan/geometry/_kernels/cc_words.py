@@ -26,8 +26,11 @@ CLOSE = 1e-12
 """An end this close, in units of the path's length, is reached."""
 
 
-@njit("int64(int64, float64, float64, float64, float64, float64, float64, float64, float64, float64[:, ::1])",
-    cache=True, nogil=True)
+@njit(
+    "int64(int64, float64, float64, float64, float64, float64, float64, float64, float64, float64[:, ::1])",
+    cache=True,
+    nogil=True,
+)
 def word_pieces(
     kind: int, d1: float, d2: float, t1: float, m: float, t2: float, a: float, b: float, s: float, pieces: FloatArray
 ) -> int:
@@ -70,8 +73,11 @@ def drive(pieces: FloatArray, n: int, a: float) -> tuple[float, float, float, fl
     return x, y, theta, length
 
 
-@njit("UniTuple(float64, 3)(float64[:, ::1], float64, float64, float64, float64, float64, float64, float64)",
-    cache=True, nogil=True)
+@njit(
+    "UniTuple(float64, 3)(float64[:, ::1], float64, float64, float64, float64, float64, float64, float64)",
+    cache=True,
+    nogil=True,
+)
 def _clothoid(
     table: FloatArray, s: float, x: float, y: float, theta: float, k0: float, k1: float, rate: float
 ) -> tuple[float, float, float]:
@@ -88,12 +94,27 @@ def _clothoid(
     return x + c * dx - sn * dy, y + sn * dx + c * dy, theta - turned + 0.5 * k1 * k1 / rate
 
 
-@njit("Tuple((boolean, float64, float64, float64, float64))(int64, float64, float64, float64, float64, float64, "
+@njit(
+    "Tuple((boolean, float64, float64, float64, float64))(int64, float64, float64, float64, float64, float64, "
     "float64, float64, float64, float64, float64, float64, float64[:, ::1], float64)",
-    cache=True, nogil=True)
+    cache=True,
+    nogil=True,
+)
 def newton(
-    kind: int, d1: float, d2: float, t1: float, m: float, t2: float, a: float, b: float, s: float,
-    x_end: float, y_end: float, theta_end: float, table: FloatArray, longest: float
+    kind: int,
+    d1: float,
+    d2: float,
+    t1: float,
+    m: float,
+    t2: float,
+    a: float,
+    b: float,
+    s: float,
+    x_end: float,
+    y_end: float,
+    theta_end: float,
+    table: FloatArray,
+    longest: float,
 ) -> tuple[bool, float, float, float, float]:
     """Solves a word for its end: whether it is one, its three numbers, its length. Stops above length `longest`."""
     unit = 2.0 / s

@@ -64,12 +64,8 @@ def spiral(table: FloatArray, k: float) -> tuple[float, float]:
     at = abs(k) * n
     i = min(int(at), n - 1)
     u = at - i
-    x = table[i, 0] + u * (
-        table[i, 1] + u * (table[i, 2] + u * (table[i, 3] + u * (table[i, 4] + u * table[i, 5])))
-    )
-    y = table[i, 6] + u * (
-        table[i, 7] + u * (table[i, 8] + u * (table[i, 9] + u * (table[i, 10] + u * table[i, 11])))
-    )
+    x = table[i, 0] + u * (table[i, 1] + u * (table[i, 2] + u * (table[i, 3] + u * (table[i, 4] + u * table[i, 5]))))
+    y = table[i, 6] + u * (table[i, 7] + u * (table[i, 8] + u * (table[i, 9] + u * (table[i, 10] + u * table[i, 11]))))
     if k < 0.0:
         return -x, -y
     return x, y
