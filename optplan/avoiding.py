@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from optplan.connectors.families import metric_of, transit_radius
+from optplan.connectors.families import family_of
 from optplan.connectors.finished import Marks, connector_lines
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.options import Options
@@ -58,15 +58,13 @@ def avoid_finished(
         more = f"finished work is not avoided: {problem.nodes} ways of driving, at most {DENSE_NODES}"
         return replace(found, message=f"{found.message}; {more}")
     weight, count = options.order.avoid, problem.clusters
-    metric = metric_of(robot, options)
-    radius = transit_radius(robot, options) if metric == "dubins" else 0.0
+    family = family_of(robot, options)
     marks, stroke = Marks(cover.strokes, robot), problem.cluster
-    exits, entries = ways.exit[:, [0, 1, 3]], ways.entry[:, [0, 1, 3]]
     costs = dense_costs(problem)
     extra = np.zeros_like(costs)
 
     def crossed(tails: IntArray, heads: IntArray, rank: IntArray) -> FloatArray:
-        lines = connector_lines(exits[tails], entries[heads], metric, radius)
+        lines = connector_lines(ways.exit[tails], ways.entry[heads], family)
         return marks.metres(lines, stroke[tails], rank, rank[stroke[heads]])
 
     def rank_of(nodes: IntArray) -> IntArray:

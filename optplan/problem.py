@@ -7,13 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from optplan.connectors.families import metric_of, start_states, transit_radius
+from optplan.connectors.families import family_of, metric_of, start_states
 from optplan.coverage.corners import least_radius
 from optplan.coverage.drawing import tolerance_of
 from optplan.domain.arrays import FloatArray, IntArray
-from optplan.domain.errors import InputError
+from optplan.domain.errors import InputError, LimitError
 from optplan.domain.options import Options
-from optplan.domain.ordering import ArcCosts, DubinsCosts, EuclidCosts, OrderingProblem
+from optplan.domain.ordering import ArcCosts, DubinsCosts, EuclidCosts, MatrixCosts, OrderingProblem
 from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
 from optplan.domain.stroke import Stroke, Traversals
@@ -21,6 +21,8 @@ from optplan.geometry.rounding import inner_vertices
 
 DUBINS_ENTRIES = 16
 """Vertices at which a closed stroke may be entered when headings count, unless the options say otherwise."""
+MOST_CURVED = 3000
+"""Ways of driving under continuous curvature: all connectors between them are computed, which takes 100 s at 10 us."""
 
 
 def traversals(
@@ -170,27 +172,38 @@ def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Opti
     ----------
     ways : traversals of the strokes of `cover`
     cover : gives precedence and, unless the options name one, the start point
-    robot, options : give the metric: straight lines, or Dubins paths of the least radius at transit speed
+    robot, options : give the metric: straight lines, or Dubins or continuous-curvature paths within the limits at
+        transit speed
 
     Raises
     ------
     InputError : a metric that this robot cannot have, or a start outside the canvas
     """
     options = options or Options()
-    metric = metric_of(robot, options)
+    family = family_of(robot, options)
     start = _start(cover, options)
     costs: ArcCosts
-    if metric == "dubins":
+    if family.metric == "cc":
+        from optplan.geometry.cc import cc_matrix
+
+        if len(ways) > MOST_CURVED:
+            raise LimitError(
+                f"{len(ways)} ways of driving the strokes; the metric 'cc' takes at most {MOST_CURVED}: "
+                "offer fewer entries, or take 'dubins'"
+            )
+        flat = [0, 1, 3, 4]
+        costs = MatrixCosts(cc_matrix(ways.exit[:, flat], ways.entry[:, flat], 1 / family.radius, family.sharpness))
+    elif family.metric == "dubins":
         from optplan.geometry.dubins import dubins_lengths
 
-        radius = transit_radius(robot, options)
-        entries, exits = ways.entry[:, [0, 1, 3]], ways.exit[:, [0, 1, 3]]
-        costs = DubinsCosts(exits, entries, radius, dubins_lengths)
-        begin = np.zeros(0) if start is None else start_states(start, entries, radius)[1]
+        costs = DubinsCosts(ways.exit[:, [0, 1, 3]], ways.entry[:, [0, 1, 3]], family.radius, dubins_lengths)
     else:
         costs = EuclidCosts(ways.exit[:, :3], ways.entry[:, :3])
-        place = None if start is None else np.array([*start, 0.0])
-        begin = np.zeros(0) if place is None else np.linalg.norm(ways.entry[:, :3] - place, axis=1)
+    begin = np.zeros(0)
+    if start is not None and family.headings:
+        begin = start_states(start, ways.entry, family)[1]
+    elif start is not None:
+        begin = np.linalg.norm(ways.entry[:, :3] - np.array([*start, 0.0]), axis=1)
     return OrderingProblem(
         ways.stroke,
         costs,

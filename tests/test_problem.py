@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from optplan.connectors.driving import connect, driven
-from optplan.connectors.families import metric_of, start_states
+from optplan.connectors.families import Family, metric_of, start_states
 from optplan.coverage.corners import split_at_corners
 from optplan.domain.errors import InputError
 from optplan.domain.job import Drawing
@@ -205,9 +205,10 @@ def test_options_name_the_start_before_the_drawing() -> None:
 
 
 def test_start_headings_are_the_best_that_were_tried() -> None:
-    entries = np.random.default_rng(4).uniform(-3, 3, (50, 3))
-    headings, lengths = start_states((0.2, 0.1), entries, 0.7)
-    for heading, length, entry in zip(headings, lengths, entries, strict=True):
+    entries = np.zeros((50, 5))
+    entries[:, [0, 1, 3]] = np.random.default_rng(4).uniform(-3, 3, (50, 3))
+    headings, lengths = start_states((0.2, 0.1), entries, Family("dubins", 0.7))
+    for heading, length, entry in zip(headings, lengths, entries[:, [0, 1, 3]], strict=True):
         assert dubins_path(array([0.2, 0.1, heading]), entry, 0.7).length == pytest.approx(length)
         for other in np.arange(36) * math.tau / 36:
             assert length <= dubins_path(array([0.2, 0.1, other]), entry, 0.7).length + 1e-9

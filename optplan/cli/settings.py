@@ -48,7 +48,7 @@ EntryVertex = Annotated[
     list[str] | None, typer.Option("--entry", help="Enter an element at a drawn vertex: 'ID:3'. Repeatable.")
 ]
 SolverName = Annotated[str | None, typer.Option("--solver", "-s", help="See: optplan solvers.")]
-Metric = Annotated[str | None, typer.Option(help="euclid, dubins or auto.")]
+Metric = Annotated[str | None, typer.Option(help="euclid, dubins, cc or auto.")]
 TimeLimit = Annotated[str | None, typer.Option(help="For ordering, e.g. 10s or 2min.")]
 Iterations = Annotated[int | None, typer.Option(help="Limit of ordering; with a seed repeatable.")]
 Seed = Annotated[int | None, typer.Option(help="Of everything random.")]

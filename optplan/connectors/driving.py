@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from optplan.connectors.families import metric_of, start_states, transit_radius
+from optplan.connectors.families import Family, family_of, start_states
 from optplan.coverage.corners import least_radius
 from optplan.coverage.drawing import tolerance_of
 from optplan.domain.arrays import FloatArray
@@ -16,6 +16,7 @@ from optplan.domain.path import RAISED, Path
 from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
 from optplan.domain.stroke import Stroke, Traversals
+from optplan.geometry.cc import cc_path
 from optplan.geometry.dubins import dubins_path
 from optplan.geometry.paths import displacement
 from optplan.geometry.rounding import Pieces, rounded, wrapped
@@ -44,6 +45,7 @@ class _Rows(NamedTuple):
     curvature: list[FloatArray]
     length: list[FloatArray]
     turn: list[FloatArray]
+    sharpness: list[FloatArray]
     dwell: list[FloatArray]
     tool: list[FloatArray]
     stroke: list[FloatArray]
@@ -55,6 +57,7 @@ class _Rows(NamedTuple):
         self.curvature.append(pieces.curvature)
         self.length.append(pieces.length)
         self.turn.append(pieces.turn)
+        self.sharpness.append(pieces.sharpness)
         self.dwell.append(np.full(count, dwell))
         self.tool.append(np.broadcast_to(tool, count))
         self.stroke.append(np.full(count, stroke))
@@ -64,7 +67,8 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     """The path that drives traversals in the order given, with connectors between them.
 
     A robot that turns on the spot moves straight from stroke to stroke; one that does not drives Dubins paths of its
-    least radius at transit speed. The tool is raised on connectors, and while it turns at a corner.
+    least radius at transit speed, or paths of continuous curvature within its limits at that speed. The tool is raised
+    on connectors, and while it turns at a corner.
 
     Parameters
     ----------
@@ -77,30 +81,29 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     InputError : a metric that this robot cannot have
     """
     options = options or Options()
-    metric = metric_of(robot, options)
-    radius = transit_radius(robot, options) if metric == "dubins" else 0.0
+    family = family_of(robot, options)
     turns = not math.isinf(robot.mobility.turn_rate)
-    rows = _Rows([], [], [], [], [], [], [], [])
+    rows = _Rows([], [], [], [], [], [], [], [], [])
     start = options.order.start or cover.start
-    here: FloatArray | None = None  # x, y, heading
+    here: FloatArray | None = None  # x, y, heading, curvature
     if start is not None and len(visits):
-        first = visits.entry[:1, [0, 1, 3]]
+        first = visits.entry[:1]
         sight = math.atan2(first[0, 1] - start[1], first[0, 0] - start[0])
-        heading = start_states(start, first, radius)[0][0] if metric == "dubins" else sight
-        here = np.array([*start, heading])
+        heading = start_states(start, first, family)[0][0] if family.headings else sight
+        here = np.array([*start, heading, 0.0])
     for row in range(len(visits)):
         visit = visits[row]
         stroke = cover.strokes[visit.stroke]
         if stroke.is_stop:
             # where headings count, the ordering problem has given the stop one
-            facing = visit.entry[3] if here is None or metric == "dubins" else here[2]
-            there = np.array([*visit.entry[:2], facing])
+            facing = visit.entry[3] if here is None or family.headings else here[2]
+            there = np.array([*visit.entry[:2], facing, 0.0])
             pieces = _pieces([_turn(there, 0.0)])
         else:
             pieces = driven(stroke, visit.entry_vertex, visit.reverse, robot, options)
-            there = np.array([*pieces.start[0], pieces.heading[0]])
+            there = np.array([*pieces.start[0], pieces.heading[0], pieces.curvature[0]])
         if here is not None:
-            rows.add(connector(here, there, metric, radius, turns), RAISED, -1)
+            rows.add(connector(here, there, family, turns), RAISED, -1)
         # pins that stay down while the robot turns sharply would draw a swirl
         sharp = (pieces.length == 0) & (np.abs(pieces.turn) > options.connect.corner) & turns
         tool = np.where(sharp, RAISED, stroke.tool)
@@ -111,10 +114,12 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     return _path(rows)
 
 
-def connector(here: FloatArray, there: FloatArray, metric: str, radius: float, turns: bool) -> Pieces:
-    """The movement between two states (3,) x, y, heading; `turns`: with the turns on the spot at both ends."""
-    if metric == "dubins":
-        return _dubins(here, there, radius)
+def connector(here: FloatArray, there: FloatArray, family: Family, turns: bool) -> Pieces:
+    """The movement between two states (4,) x, y, heading, curvature; `turns`: with turns on the spot at both ends."""
+    if family.metric == "dubins":
+        return _dubins(here, there, family.radius)
+    if family.metric == "cc":
+        return _cc(here, there, family)
     dx, dy = there[:2] - here[:2]
     distance = math.hypot(dx, dy)
     if distance <= COINCIDENT:
@@ -123,19 +128,29 @@ def connector(here: FloatArray, there: FloatArray, metric: str, radius: float, t
     made: list[tuple[float, ...]] = [(here[0], here[1], heading, 0.0, distance, 0.0)]
     if turns:
         made.insert(0, _turn(here, _short(heading - here[2])))
-        made.append(_turn(np.array([*there[:2], heading]), _short(there[2] - heading)))
+        made.append(_turn(np.array([*there[:2], heading, 0.0]), _short(there[2] - heading)))
     return _pieces(made)
 
 
 def _dubins(here: FloatArray, there: FloatArray, radius: float) -> Pieces:
-    path = dubins_path(here, there, radius)
+    path = dubins_path(here[:3], there[:3], radius)
     made: list[tuple[float, ...]] = []
-    x, y, heading = here
+    x, y, heading = here[:3]
     for curvature, length in zip(path.curvatures, path.lengths, strict=True):
         made.append((x, y, heading, curvature, length, 0.0))
         dx, dy = displacement(*(np.array([value]) for value in (heading, curvature, 0.0, length)))
         x, y, heading = x + dx[0], y + dy[0], heading + curvature * length
     return _pieces(made)
+
+
+def _cc(here: FloatArray, there: FloatArray, family: Family) -> Pieces:
+    path = cc_path(here, there, 1 / family.radius, family.sharpness)
+    count = len(path.lengths)
+    turned = path.lengths * (path.curvatures + path.sharpnesses * path.lengths / 2)
+    heading = here[2] + np.concatenate([[0.0], np.cumsum(turned)])[:count]
+    dx, dy = displacement(heading, path.curvatures, path.sharpnesses, path.lengths)
+    start = here[:2] + np.column_stack([np.cumsum(dx) - dx, np.cumsum(dy) - dy])
+    return Pieces(start, heading, path.curvatures, path.lengths, np.zeros(count), path.sharpnesses)
 
 
 def _turn(at: FloatArray, angle: float) -> tuple[float, ...]:
@@ -148,7 +163,7 @@ def _short(angle: float) -> float:
 
 def _pieces(made: list[tuple[float, ...]]) -> Pieces:
     table = np.array(made, dtype=np.float64).reshape(-1, 6)
-    return Pieces(table[:, :2], table[:, 2], table[:, 3], table[:, 4], table[:, 5])
+    return Pieces(table[:, :2], table[:, 2], table[:, 3], table[:, 4], table[:, 5], np.zeros(len(table)))
 
 
 def _without_turns(pieces: Pieces) -> Pieces:
@@ -157,16 +172,18 @@ def _without_turns(pieces: Pieces) -> Pieces:
 
 
 def _end(pieces: Pieces) -> FloatArray:
-    last = [column[-1:] for column in pieces]
-    dx, dy = displacement(last[1], last[2], np.zeros(1), last[3])
-    return np.array([last[0][0, 0] + dx[0], last[0][0, 1] + dy[0], last[1][0] + last[2][0] * last[3][0] + last[4][0]])
+    start, heading, curvature, length, turn, sharpness = (column[-1:] for column in pieces)
+    dx, dy = displacement(heading, curvature, sharpness, length)
+    turned = length[0] * (curvature[0] + sharpness[0] * length[0] / 2) + turn[0]
+    bend = curvature[0] + sharpness[0] * length[0]
+    return np.array([start[0, 0] + dx[0], start[0, 1] + dy[0], heading[0] + turned, bend])
 
 
 def _path(rows: _Rows) -> Path:
     columns = [np.concatenate(column) if column else np.zeros(0) for column in rows]
     start = columns[0].reshape(-1, 3)
-    heading, curvature, length, turn, dwell = columns[1:6]
-    tool, stroke = (column.astype(np.int64) for column in columns[6:])
+    heading, curvature, length, turn, sharpness, dwell = columns[1:7]
+    tool, stroke = (column.astype(np.int64) for column in columns[7:])
     keep = (length > 0) | (turn != 0) | (stroke >= 0)
     zero = np.zeros(int(keep.sum()))
     return Path(
@@ -174,7 +191,7 @@ def _path(rows: _Rows) -> Path:
         heading[keep],
         zero,
         curvature[keep],
-        zero,
+        sharpness[keep],
         length[keep],
         turn[keep],
         dwell[keep],

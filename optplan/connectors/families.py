@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,35 +23,76 @@ def metric_of(robot: Robot, options: Options) -> str:
     """
     asked = options.order.metric
     if asked == "euclid" and robot.heading_counts:
-        raise InputError(f"the metric 'euclid' needs turns on the spot, which {robot.name} cannot; expected 'dubins'")
+        raise InputError(
+            f"the metric 'euclid' needs turns on the spot, which {robot.name} cannot; expected 'dubins' or 'cc'"
+        )
     return asked if asked != "auto" else "dubins" if robot.heading_counts else "euclid"
 
 
-def transit_radius(robot: Robot, options: Options) -> float:
-    """Turning radius of connectors: the least at transit speed, m. Raises InputError when the robot cannot turn."""
+class Family(NamedTuple):
+    """The connectors of a robot: a metric, and what limits them."""
+
+    metric: str
+    radius: float = 0.0
+    """least turning radius, m ("dubins", "cc")"""
+    sharpness: float = math.inf
+    """greatest change of curvature a metre, 1/m^2 ("cc")"""
+
+    @property
+    def headings(self) -> bool:
+        """Whether headings count."""
+        return self.metric != "euclid"
+
+    def lengths(self, exits: FloatArray, entries: FloatArray) -> FloatArray:
+        """Lengths (k,) m of connectors between states (k, 5) x, y, z, heading, curvature."""
+        if self.metric == "cc":
+            from optplan.geometry.cc import cc_lengths
+
+            return cc_lengths(exits[:, _FLAT], entries[:, _FLAT], 1 / self.radius, self.sharpness)
+        if self.metric == "dubins":
+            from optplan.geometry.dubins import dubins_lengths
+
+            return dubins_lengths(exits[:, _FLAT[:3]], entries[:, _FLAT[:3]], self.radius)
+        lengths: FloatArray = np.linalg.norm(exits[:, :3] - entries[:, :3], axis=1)
+        return lengths
+
+
+_FLAT = [0, 1, 3, 4]
+"""x, y, heading, curvature of a state."""
+
+
+def family_of(robot: Robot, options: Options) -> Family:
+    """The connectors that a plan has, within what the robot can drive at transit speed.
+
+    Raises InputError when the robot cannot turn, or when nothing limits its curvature or the rate of that.
+    """
+    metric = metric_of(robot, options)
+    if metric == "euclid":
+        return Family(metric)
     speed = options.time.transit_speed or robot.mobility.transit_speed
-    curvature = robot.mobility.curvature_limits(speed).curvature
-    if not 0 < curvature < math.inf:
-        reason = "follows any curve" if curvature > 0 else f"cannot turn at {speed:g} m/s"
-        raise InputError(f"the metric 'dubins' needs a turning radius, but {robot.name} {reason}; expected 'euclid'")
-    return 1 / curvature
+    limits = robot.mobility.curvature_limits(speed)
+    if not 0 < limits.curvature < math.inf:
+        reason = "follows any curve" if limits.curvature > 0 else f"cannot turn at {speed:g} m/s"
+        raise InputError(f"the metric {metric!r} needs a turning radius, but {robot.name} {reason}; expected 'euclid'")
+    if metric == "cc" and not 0 < limits.sharpness < math.inf:
+        raise InputError(f"the metric 'cc' needs a limit of sharpness, which {robot.name} has not; expected 'dubins'")
+    return Family(metric, 1 / limits.curvature, limits.sharpness)
 
 
-def start_states(start: tuple[float, float], entries: FloatArray, radius: float) -> tuple[FloatArray, FloatArray]:
-    """Best heading (k,) at a start point for reaching entry states (k, 3), and the lengths (k,), m.
+def start_states(start: tuple[float, float], entries: FloatArray, family: Family) -> tuple[FloatArray, FloatArray]:
+    """Best heading (k,) at a start point for reaching entry states (k, 5), and the lengths (k,), m.
 
     The robot is set down at its start by hand, so its heading there is free; START_HEADINGS of them are tried, and the
-    straight line of sight.
+    straight line of sight. Its wheels are straight there.
     """
-    from optplan.geometry.dubins import dubins_lengths
-
     sight = np.arctan2(entries[:, 1] - start[1], entries[:, 0] - start[0])
     around = np.linspace(0, 2 * math.pi, START_HEADINGS, endpoint=False)
-    tried = [sight, *(np.full(len(entries), heading) for heading in around)]
+    tried = np.array([sight, *(np.full(len(entries), heading) for heading in around)])
     lengths = []
     for headings in tried:
-        states = np.column_stack([np.full(len(entries), start[0]), np.full(len(entries), start[1]), headings])
-        lengths.append(dubins_lengths(states, np.ascontiguousarray(entries), radius))
+        states = np.zeros((len(entries), 5))
+        states[:, 0], states[:, 1], states[:, 3] = start[0], start[1], headings
+        lengths.append(family.lengths(states, entries))
     best = np.argmin(lengths, axis=0)
     rows = np.arange(len(entries))
-    return np.array(tried)[best, rows], np.array(lengths)[best, rows]
+    return tried[best, rows], np.array(lengths)[best, rows]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from optplan.connectors.driving import connector
+from optplan.connectors.families import Family
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.path import RAISED
 from optplan.domain.robot import Robot
@@ -76,22 +77,24 @@ class Marks:
         return found
 
 
-def connector_lines(exits: FloatArray, entries: FloatArray, metric: str, radius: float) -> Any:
-    """Shapely lines (k,) that connectors between states (k, 3) x, y, heading follow."""
+def connector_lines(exits: FloatArray, entries: FloatArray, family: Family) -> Any:
+    """Shapely lines (k,) that connectors between states (k, 5) x, y, z, heading, curvature follow."""
     import shapely
 
-    if metric == "euclid":
+    if not family.headings:
         return shapely.linestrings(np.stack([exits[:, :2], entries[:, :2]], axis=1))
     made = []
-    for here, there in zip(exits, entries, strict=True):
-        pieces = connector(here, there, metric, radius, turns=False)
-        points = [here[:2]]
-        for start, heading, bend, length in zip(
-            pieces.start, pieces.heading, pieces.curvature, pieces.length, strict=True
-        ):
-            count = max(1, int(np.ceil(abs(bend) * length / BIT)))
-            along = length * np.arange(1, count + 1) / count
-            dx, dy = displacement(np.full(count, heading), np.full(count, bend), np.zeros(count), along)
-            points.extend(start + np.column_stack([dx, dy]))
-        made.append(shapely.LineString(points if len(points) > 1 else [here[:2], there[:2]]))
+    for here, there in zip(exits[:, [0, 1, 3, 4]], entries[:, [0, 1, 3, 4]], strict=True):
+        pieces = connector(here, there, family, turns=False)
+        points = [here[None, :2]]
+        for k in range(len(pieces.length)):
+            length, bend = pieces.length[k], pieces.curvature[k]
+            turned = length * max(abs(bend), abs(bend + pieces.sharpness[k] * length))
+            along = length * np.linspace(0, 1, 1 + max(1, int(np.ceil(turned / BIT))))[1:]
+            heading, curvature, sharpness = (
+                np.full(len(along), column[k]) for column in (pieces.heading, pieces.curvature, pieces.sharpness)
+            )
+            points.append(pieces.start[k] + np.column_stack(displacement(heading, curvature, sharpness, along)))
+        line = np.concatenate([*points, there[None, :2]])
+        made.append(shapely.LineString(line))
     return np.array(made, dtype=object)

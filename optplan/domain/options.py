@@ -9,7 +9,7 @@ from optplan.domain.arrays import MAX_NUMBER
 from optplan.domain.errors import InputError
 from optplan.domain.job import FillSettings
 
-METRICS = ("auto", "euclid", "dubins")
+METRICS = ("auto", "euclid", "dubins", "cc")
 
 Link = tuple[str, int, str, int]
 """An enforced connection: stroke and its drawn vertex, counted from 0 (-1: the last), twice."""
@@ -70,7 +70,7 @@ class OrderOptions:
     Parameters
     ----------
     solver : a name from `optplan.ordering.SOLVERS`, or "auto"
-    metric : "euclid", "dubins", or "auto": what the robot's mobility asks for
+    metric : "euclid", "dubins", "cc" (continuous curvature), or "auto": what the robot's mobility asks for
     seconds, iterations : stop rule; None sets no limit beyond the solver's own
     seed : of everything random
     start : (x, y) m where the robot stands, or None for the drawing's own start point, or a free choice

@@ -30,18 +30,20 @@ class Vertices(NamedTuple):
 
 
 class Pieces(NamedTuple):
-    """Lines, arcs and turns in driving order; all arrays have one row a piece."""
+    """Lines, arcs, clothoids and turns in driving order; all arrays have one row a piece."""
 
     start: FloatArray
     """(n, 2) m"""
     heading: FloatArray
     """rad"""
     curvature: FloatArray
-    """1/m"""
+    """1/m, at the beginning"""
     length: FloatArray
     """m; 0 where the robot turns on the spot"""
     turn: FloatArray
     """rad turned on the spot"""
+    sharpness: FloatArray
+    """1/m^2, how the curvature grows along the piece"""
 
     @property
     def total(self) -> float:
@@ -113,4 +115,4 @@ def rounded(points: FloatArray, tolerance: float, radius: float, corner: float) 
     length[1::2] = np.where(is_arc, np.abs(vertices.deflection) / np.where(is_arc, np.abs(bend), 1.0), 0.0)
     turn[1::2] = np.where(vertices.corner, vertices.deflection, 0.0)
     keep = (length > 0) | (turn != 0)
-    return Pieces(start[keep], heading[keep], curvature[keep], length[keep], turn[keep])
+    return Pieces(start[keep], heading[keep], curvature[keep], length[keep], turn[keep], np.zeros(int(keep.sum())))

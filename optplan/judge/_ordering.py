@@ -36,7 +36,7 @@ def cost(ordering: Ordering, path: Path, robot: Robot, options: Options) -> Chec
     slack = RELATIVE * max(driven, 1e-3)
     metric = options.order.metric
     asked = "dubins" if robot.heading_counts else "euclid"
-    if metric not in ("auto", asked):
+    if metric not in ("auto", asked, "cc"):
         return noted("cost", driven, "m", f"The order was chosen by the metric {metric}, not by what is driven.")
     more = claimed - driven
     good = abs(more) <= slack

@@ -48,7 +48,7 @@ class OrderModel(Model):
     """How strokes are ordered."""
 
     solver: str = "auto"
-    metric: str = Field("auto", description="euclid, dubins or auto")
+    metric: str = Field("auto", description="euclid, dubins, cc or auto")
     seconds: Duration | None = Field(None, description="time limit")
     iterations: int | None = Field(None, ge=0, description="iteration limit: with a seed a repeatable plan")
     seed: int = Field(0, ge=0, lt=2**31)

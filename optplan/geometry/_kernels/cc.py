@@ -13,7 +13,7 @@ import numpy as np
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
 from optplan.geometry._kernels.cc_full import full_words, middle_table
-from optplan.geometry._kernels.cc_reference import S, T, TTT, reference_word, turn_pieces, turn_table
+from optplan.geometry._kernels.cc_reference import TTT, S, T, reference_word, turn_pieces, turn_table
 from optplan.geometry._kernels.cc_words import word_pieces
 from optplan.geometry._kernels.clothoid import clothoid_end
 from optplan.geometry._kernels.spiral import spiral_table

@@ -12,8 +12,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
 from optplan.geometry._kernels.clothoid import clothoid_end
