@@ -18,8 +18,8 @@ from optplan.geometry.clothoids import clothoid_displacement
 from optplan.geometry.curves import Curve, moved, positive
 from optplan.geometry.rounding import STRAIGHT, wrapped
 
-_GRID = 721
-"""Swings tried before roots and minima are refined: steps of a degree."""
+_GRID = 2881
+"""Swings tried before roots and minima are refined: steps of a quarter of a degree."""
 
 
 class Turns(NamedTuple):
@@ -185,39 +185,42 @@ def _closings(total: float, kappa_max: float, sigma_max: float) -> list[tuple[fl
 
     cosine = math.cos(total / 2)
 
-    def gap(swing: FloatArray) -> FloatArray:
-        first, rest = turns(swing, kappa_max, sigma_max), turns(total - 2 * swing, kappa_max, sigma_max)
-        left: FloatArray = 2 * first.width * np.cos((total - swing) / 2) + rest.width
-        return left
+    def loop(swing: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What does not close without lines, m along the middle, and the length of the three turns."""
+        made = turns(np.concatenate([swing, total - 2 * swing]), kappa_max, sigma_max)
+        width, length = made.width.reshape(2, -1), made.length.reshape(2, -1)
+        return 2 * width[0] * np.cos((total - swing) / 2) + width[1], 2 * length[0] + length[1]
 
-    def driven(swing: FloatArray, line: FloatArray) -> FloatArray:
-        both = turns(np.concatenate([swing, total - 2 * swing]), kappa_max, sigma_max).length.reshape(2, -1)
-        whole: FloatArray = 2 * (both[0] + line) + both[1]
-        return whole
+    def gap(swing: float) -> float:
+        return float(loop(np.array([swing]))[0][0])
+
+    def with_lines(swing: float) -> float:
+        left, length = loop(np.array([swing]))
+        return float(length[0] - left[0] / cosine)
 
     swings = np.linspace(-2 * math.pi, 2 * math.pi, _GRID)
-    values = gap(swings)
+    gaps, lengths = loop(swings)
     tried: list[tuple[float, float]] = []  # line, swing
-    for k in np.flatnonzero(np.sign(values[:-1]) * np.sign(values[1:]) <= 0):
-        if values[k] == 0 or values[k + 1] == 0:
-            swing = float(swings[k] if values[k] == 0 else swings[k + 1])
+    crossed = np.flatnonzero(np.sign(gaps[:-1]) * np.sign(gaps[1:]) <= 0)
+    real = crossed[np.abs(total - 2 * swings[crossed]) + np.abs(swings[crossed]) > 0.1]
+    for k in crossed:
+        if len(real) and lengths[k] > 1.2 * lengths[real].min():
+            continue  # cannot be the shortest: not worth a root
+        if gaps[k] == 0 or gaps[k + 1] == 0:
+            swing = float(swings[k] if gaps[k] == 0 else swings[k + 1])
         else:
-            swing = brentq(lambda e: float(gap(np.array([e]))[0]), swings[k], swings[k + 1], xtol=1e-14, rtol=1e-14)
+            swing = brentq(gap, swings[k], swings[k + 1], xtol=1e-14, rtol=1e-14)
         tried.append((0.0, swing))
     if abs(cosine) > 1e-6:
-        lines = -values / (2 * cosine)
-        lengths = np.where(lines >= 0, driven(swings, lines), np.inf)
-        least = int(np.argmin(lengths))
-        refined = minimize_scalar(
-            lambda e: float(driven(np.array([e]), -gap(np.array([e])) / (2 * cosine))[0]),
-            bounds=(float(swings[max(least - 1, 0)]), float(swings[min(least + 1, _GRID - 1)])),
-            method="bounded",
-        )
+        whole = np.where(gaps * cosine <= 0, lengths - gaps / cosine, np.inf)
+        least = int(np.argmin(whole))
+        around = (float(swings[max(least - 1, 0)]), float(swings[min(least + 1, _GRID - 1)]))
+        refined = minimize_scalar(with_lines, bounds=around, method="bounded", options={"xatol": 1e-7})
         for swing in (0.0, float(swings[least]), float(refined.x)):
-            tried.append((-float(gap(np.array([swing]))[0]) / (2 * cosine), swing))
+            tried.append((-gap(swing) / (2 * cosine), swing))
     # no turning at all closes too, but is no loop
-    real = [(line, swing) for line, swing in tried if line >= 0 and abs(total - 2 * swing) + abs(swing) > 1e-6]
-    return [(float(driven(np.array([e]), np.array([line]))[0]), line, e) for line, e in real]
+    loops = [(line, swing) for line, swing in tried if line >= 0 and abs(total - 2 * swing) + abs(swing) > 1e-6]
+    return [(float(loop(np.array([swing]))[1][0]) + 2 * line, line, swing) for line, swing in loops]
 
 
 def _turn_rows(angle: float, kappa_max: float, sigma_max: float) -> list[tuple[float, float, float]]:
