@@ -8,12 +8,14 @@ import numpy as np
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
-from optplan.geometry._kernels.cc_turns import from_least, least_deflection, lines_between
+from optplan.geometry._kernels.cc_scan import LINES, lines
+from optplan.geometry._kernels.cc_turns import from_least, limits_of, side_of
 from optplan.geometry._kernels.cc_words import CCC, CSC, newton
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
-GRID = 16
+FACTOR = 1.15
+"""Newton's method is not started from a guess this many times as long as the shortest path so far."""
 WIDE = 24
 
 
@@ -74,8 +76,8 @@ def _extended(t: float, s: float) -> float:
 
 
 @njit(
-    "void(float64, float64, float64, float64, float64, float64, float64, float64[:, ::1], float64[:, ::1], "
-    "float64[:, ::1])",
+    "float64(float64, float64, float64, float64, float64, float64, float64, float64[:, ::1], float64[:, ::1], "
+    "float64[:, ::1], float64)",
     cache=True,
     nogil=True,
 )
@@ -90,7 +92,8 @@ def _three_turns(
     table: FloatArray,
     middles: FloatArray,
     best: FloatArray,
-) -> None:
+    shortest: float,
+) -> float:
     """CCC words from circles at the limit: the middle must span their centres."""
     row = 4 if d > 0.0 else 5
     # centres of the circles, mirrored so that the outer turns are left
@@ -122,9 +125,12 @@ def _three_turns(
     for j in range(3):
         most = turning + j * TWO_PI
         m = math.sqrt(s * most) if s * most < 1.0 else 0.5 * (s * most + 1.0)
-        good, u1, um, u2, length = newton(CCC, d, d, t1, m, t2, a, b, s, x, y, theta, table, math.inf)
+        if (2.0 * (t1 + m + t2) - d * (a + b)) / s > FACTOR * shortest:
+            break
+        good, u1, um, u2, length = newton(CCC, d, d, t1, m, t2, a, b, s, x, y, theta, table, shortest)
         if good:
             _keep(best, row, CCC, d, d, u1, um, u2, length)
+            shortest = min(shortest, length)
     n = len(middles)
     for i in range(n - 1):
         for way in range(2):
@@ -142,13 +148,15 @@ def _three_turns(
             for j in range(4):
                 t1 = 1.0 + 0.5 * s * (arc1 - TWO_PI * (j & 1))
                 t2 = 1.0 + 0.5 * s * (arc2 - TWO_PI * (j >> 1))
-                if t1 < -w or t2 < -w:
+                if t1 < -w or t2 < -w or (2.0 * (t1 + w + t2) - d * (a + b)) / s > FACTOR * shortest:
                     continue
                 good, u1, um, u2, length = newton(
-                    CCC, d, d, max(t1, 0.1), w, max(t2, 0.1), a, b, s, x, y, theta, table, math.inf
+                    CCC, d, d, max(t1, 0.1), w, max(t2, 0.1), a, b, s, x, y, theta, table, shortest
                 )
                 if good:
                     _keep(best, row, CCC, d, d, u1, um, u2, length)
+                    shortest = min(shortest, length)
+    return shortest
 
 
 @njit(
@@ -167,47 +175,44 @@ def full_words(
     middles: FloatArray,
     best: FloatArray,
 ) -> None:
-    """Fills rows length, kind, d1, d2, t1, m, t2 of the shortest LSL, RSR, LSR, RSL, LRL, RLR (6, 7); inf: none.
+    """Improves rows length, kind, d1, d2, t1, m, t2 of the shortest LSL, RSR, LSR, RSL, LRL, RLR (6, 7).
 
-    From the origin with heading 0 and curvature a to x, y, theta with curvature b.
+    From the origin with heading 0 and curvature a to x, y, theta with curvature b. Rows above the sixth are only looked
+    at: what is much longer than the shortest of all is not searched for.
     """
-    best[:, 0] = math.inf
-    query = (x, y, theta, a, b, s)
-    roots = np.empty((2, 3))
-    towards = math.atan2(y, x) if x != 0.0 or y != 0.0 else 0.5 * theta
-    step = TWO_PI / GRID
-    shortest = math.inf
-    for row in range(4):
-        d1 = 1.0 if row == 0 or row == 2 else -1.0
-        d2 = 1.0 if row == 0 or row == 3 else -1.0
-        jump1 = d1 * least_deflection(d1 * a, s)
-        jump2 = theta - d2 * least_deflection(d2 * b, s)
-        for j in range(GRID):
-            low = towards + (j - GRID // 2) * step
-            high = low + step
-            cut1 = from_least(jump1, low)
-            cut2 = from_least(jump2, low)
-            first = min(min(cut1, cut2), high)
-            second = min(max(cut1, cut2), high)
-            for part in range(3):
-                left = low if part == 0 else (first if part == 1 else second)
-                right = first if part == 0 else (second if part == 1 else high)
-                if right - left < 1e-12:
-                    continue
-                for root in range(lines_between(left, right, d1, d2, query, table, roots)):
-                    m, t1, t2 = roots[root, 0], roots[root, 1], roots[root, 2]
-                    if m >= -1e-6:
-                        good, u1, um, u2, length = newton(CSC, d1, d2, t1, m, t2, a, b, s, x, y, theta, table, math.inf)
-                        if good:
-                            _keep(best, row, CSC, d1, d2, u1, um, u2, length)
-                    if row < 2 and m < 1e-6:
-                        # a line that would be driven backwards: a valley above 0 takes its place
-                        dip = max(-0.95, 0.5 * s * m)
-                        good, u1, um, u2, length = newton(
-                            CCC, d1, d1, t1, dip, t2, a, b, s, x, y, theta, table, math.inf
-                        )
-                        if good:
-                            _keep(best, 4 + row, CCC, d1, d1, u1, um, u2, length)
+    limits = limits_of(s, table)
+    sides = (
+        side_of(1.0, a, limits, table),
+        side_of(-1.0, a, limits, table),
+        side_of(1.0, b, limits, table),
+        side_of(-1.0, b, limits, table),
+    )
+    found = np.empty((LINES, 5))
+    count = lines(x, y, theta, sides, limits, table, found)
+    shortest = best[:, 0].min()
+    for i in range(count):
+        if found[i, 2] >= -1e-9:
+            row = int(found[i, 0])
+            d1 = 1.0 if row == 0 or row == 2 else -1.0
+            d2 = 1.0 if row == 0 or row == 3 else -1.0
+            _keep(best, row, CSC, d1, d2, found[i, 3], max(found[i, 2], 0.0), found[i, 4], found[i, 1])
+            shortest = min(shortest, found[i, 1])
+    for i in range(count):
+        row = int(found[i, 0])
+        m = found[i, 2]
+        if row >= 2 or found[i, 1] > FACTOR * shortest:
+            continue
+        d1 = 1.0 - 2.0 * row
+        if m < 0.0:
+            # a line that would be driven backwards: a valley above 0 takes its place
+            m = max(-0.95, 0.5 * s * m)
+        else:
+            continue
+        good, u1, um, u2, length = newton(
+            CCC, d1, d1, found[i, 3], m, found[i, 4], a, b, s, x, y, theta, table, shortest
+        )
+        if good:
+            _keep(best, 4 + row, CCC, d1, d1, u1, um, u2, length)
+            shortest = min(shortest, length)
     for row in range(2):
-        d = 1.0 - 2.0 * row
-        _three_turns(x, y, theta, a, b, s, d, table, middles, best)
+        shortest = min(shortest, _three_turns(x, y, theta, a, b, s, 1.0 - 2.0 * row, table, middles, best, shortest))

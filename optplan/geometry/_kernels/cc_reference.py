@@ -17,7 +17,7 @@ import numpy as np
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
-from optplan.geometry._kernels.cc_turns import turn
+from optplan.geometry._kernels.cc_turns import limits_of, side_of
 from optplan.geometry._kernels.spiral import spiral
 
 S, T, TT, TST, TTT = range(5)
@@ -60,7 +60,8 @@ def turn_table(s: float, table: FloatArray) -> FloatArray:
     chord / length of two clothoids.
     """
     out = np.empty(HEAD + 6 * CELLS)
-    _, _, _, cx, cy = turn(1.0 / s + 1.0, 0.0, s, table)
+    side = side_of(1.0, 0.0, limits_of(s, table), table)
+    cx, cy = side[7], side[8]
     radius = math.hypot(cx, cy)
     mu = math.atan2(cx, cy)
     out[0], out[1], out[2], out[3], out[4] = cx, cy, radius, mu, 1.0 / s

@@ -4,27 +4,30 @@ A turn is seen from its outer end: it starts in the origin with heading 0 and cu
 with curvature 0. Its peak is t = sqrt(s delta + a^2 / 2), held on an arc where that is above 1. A turn of the end is
 the same seen backwards and reflected, a turn to the right is the mirror image.
 
-With P1, P2 the line's ends for a heading psi, f(psi) = cross(u, P2 - P1) must vanish. Turning more swings the line about
-the centre C of the circle at the peak, so f' = -u (C2 - C1).
+A turn tells of the line that goes on from its inner end: how far left of the origin it passes (h), how far along it
+the inner end is (g), and how far along the centre C of the circle at the peak (g_c). With D the end's place,
+
+    f(psi) = cross(u, D) + d2 h2 - d1 h1
+
+must vanish for the heading psi of the line. Turning more swings the line about C, so f' = -(u D - g_c1 - g_c2).
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
 from optplan.geometry._kernels.spiral import spiral
 
-Query = tuple[float, float, float, float, float, float]
-"""x, y, heading of the end seen from the start, curvatures of both, sharpness limit s"""
 TWO_PI = 2.0 * math.pi
-
-
-@njit("float64(float64, float64)", cache=True, nogil=True, inline="always")
-def least_deflection(a: float, s: float) -> float:
-    """The turn that only brings the curvature a to 0 at sharpness s; left turns turn further left."""
-    return 0.5 * a * abs(a) / s
+Side = tuple[float, float, float, float, float, float, float, float, float]
+"""d (1: left), a seen as a left turn, least deflection, exp(-i a^2 / 2s) E(a) negated (x, y), cos and sin of that angle,
+centre of the circle at the limit (x, y)"""
+Limits = tuple[float, float, float, float, float, float]
+"""s, E(1), 1 / 2s, and g and h of a held turn's inner end seen from its circle's centre"""
 
 
 @njit("float64(float64, float64)", cache=True, nogil=True, inline="always")
@@ -34,86 +37,113 @@ def from_least(angle: float, least: float) -> float:
     return least + TWO_PI * (rest - math.floor(rest))
 
 
-@njit("UniTuple(float64, 5)(float64, float64, float64, float64[:, ::1])", cache=True, nogil=True)
-def turn(delta: float, a: float, s: float, table: FloatArray) -> tuple[float, float, float, float, float]:
-    """Place of a turn's inner end, its extended peak, and the centre of the circle at its peak."""
-    square = max(s * delta + 0.5 * a * a, 0.0)
-    peak = min(math.sqrt(square), 1.0)
-    turned = 0.5 * (peak * peak - a * a) / s
-    before = -0.5 * a * a / s
-    ea_x, ea_y = spiral(table, a)
-    ex, ey = spiral(table, peak)
-    c = math.cos(before)
-    sn = math.sin(before)
-    jx = c * (ex - ea_x) - sn * (ey - ea_y)
-    jy = sn * (ex - ea_x) + c * (ey - ea_y)
-    radius = 1.0 / max(peak, 1e-12)
-    cx = jx - math.sin(turned) * radius
-    cy = jy + math.cos(turned) * radius
-    c = math.cos(delta)
-    sn = math.sin(delta)
-    x = c * ex + sn * ey
-    y = sn * ex - c * ey
-    if square <= 1.0:
-        return jx + x, jy + y, peak, cx, cy
-    # on the circle for the rest: from its centre to the arc's end, then down
-    down = delta - 0.5 / s
-    arc = delta - (1.0 - 0.5 * a * a) / s
-    return cx + math.sin(down) + x, cy - math.cos(down) + y, 1.0 + 0.5 * s * arc, cx, cy
+@njit("UniTuple(float64, 6)(float64, float64[:, ::1])", cache=True, nogil=True)
+def limits_of(s: float, table: FloatArray) -> Limits:
+    """What all turns at the same limits share."""
+    ex, ey = spiral(table, 1.0)
+    half = 0.5 / s
+    return s, ex, ey, half, ex - math.sin(half), -ey - math.cos(half)
+
+
+@njit("UniTuple(float64, 9)(float64, float64, UniTuple(float64, 6), float64[:, ::1])", cache=True, nogil=True)
+def side_of(d: float, curvature: float, limits: Limits, table: FloatArray) -> Side:
+    """What all turns to side d from the same end share."""
+    s, ex, ey, half, _, _ = limits
+    a = d * curvature
+    angle = half * a * a
+    c = math.cos(angle)
+    sn = -math.sin(angle)
+    ax, ay = spiral(table, a)
+    turned = half - angle
+    cx = c * (ex - ax) - sn * (ey - ay) - math.sin(turned)
+    cy = sn * (ex - ax) + c * (ey - ay) + math.cos(turned)
+    # the least turn brings the curvature to 0 and no more
+    return d, a, half * a * abs(a), sn * ay - c * ax, -sn * ax - c * ay, c, sn, cx, cy
 
 
 @njit(
-    "UniTuple(float64, 5)(float64, float64, float64, float64, float64, UniTuple(float64, 6), float64[:, ::1])",
+    "UniTuple(float64, 4)(float64, float64, float64, UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
 )
-def gap(
-    psi: float, shift1: float, shift2: float, d1: float, d2: float, query: Query, table: FloatArray
-) -> tuple[float, float, float, float, float]:
-    """f and f' at a heading psi of the line, its length along psi, and both extended peaks.
+def turn(
+    delta: float, c: float, sn: float, side: Side, limits: Limits, table: FloatArray
+) -> tuple[float, float, float, float]:
+    """h, g, g_c and the extended peak of a turn by delta, whose cosine and sine are c and sn."""
+    _, a, _, ox, oy, ca, sa, cx, cy = side
+    s, ex, ey, half, g_held, h_held = limits
+    square = s * delta + 0.5 * a * a
+    if square >= 1.0:
+        g = c * cx + sn * cy
+        return c * cy - sn * cx + h_held, g + g_held, g, 0.5 * (square + 1.0)
+    peak = math.sqrt(max(square, 0.0))
+    ex, ey = spiral(table, peak)
+    x = ca * ex - sa * ey + ox
+    y = sa * ex + ca * ey + oy
+    g = c * x + sn * y
+    # as the peak goes to 0, its circle's centre goes to infinity, but not along the line
+    centre = math.sin(half * square) / peak if peak > 1e-9 else half * peak
+    return c * y - sn * x - ey, g + ex, g + centre, peak
 
-    The turns are d1 psi + shift1 and shift2 - d2 psi, and no less than the least.
-    """
-    x, y, theta, a, b, s = query
-    delta1 = max(shift1 + d1 * psi, least_deflection(d1 * a, s))
-    delta2 = max(shift2 - d2 * psi, least_deflection(d2 * b, s))
-    x1, y1, t1, cx1, cy1 = turn(delta1, d1 * a, s, table)
-    x2, y2, t2, cx2, cy2 = turn(delta2, d2 * b, s, table)
-    c = math.cos(theta)
-    sn = math.sin(theta)
+
+@njit(
+    "UniTuple(float64, 5)(float64, float64, float64, float64, float64, float64,"
+    "UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
+    cache=True,
+    nogil=True,
+)
+def _gap(
+    psi: float,
+    shift1: float,
+    shift2: float,
+    x: float,
+    y: float,
+    theta: float,
+    side1: Side,
+    side2: Side,
+    limits: Limits,
+    table: FloatArray,
+) -> tuple[float, float, float, float, float]:
+    """f, f', the line's length along psi and both extended peaks; deflections d1 psi + shift1 and shift2 - d2 psi."""
+    d1 = side1[0]
+    d2 = side2[0]
     ux = math.cos(psi)
     uy = math.sin(psi)
-    px = x - c * x2 - d2 * sn * y2 - x1
-    py = y - sn * x2 + d2 * c * y2 - d1 * y1
-    qx = x - c * cx2 - d2 * sn * cy2 - cx1
-    qy = y - sn * cx2 + d2 * c * cy2 - d1 * cy1
-    return ux * py - uy * px, -ux * qx - uy * qy, ux * px + uy * py, t1, t2
+    h1, g1, gc1, t1 = turn(max(shift1 + d1 * psi, side1[2]), ux, d1 * uy, side1, limits, table)
+    off = theta - psi
+    h2, g2, gc2, t2 = turn(max(shift2 - d2 * psi, side2[2]), math.cos(off), d2 * math.sin(off), side2, limits, table)
+    along = ux * x + uy * y
+    return ux * y - uy * x + d2 * h2 - d1 * h1, gc1 + gc2 - along, along - g1 - g2, t1, t2
 
 
 @njit(
-    "UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64, float64, float64,"
-    "UniTuple(float64, 6), float64[:, ::1])",
+    "UniTuple(float64, 3)(float64, float64, float64, float64, float64, float64, float64, float64, float64,"
+    "UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
 )
-def _root(
+def line_root(
     low: float,
     high: float,
     f_low: float,
     f_high: float,
     shift1: float,
     shift2: float,
-    d1: float,
-    d2: float,
-    query: Query,
+    x: float,
+    y: float,
+    theta: float,
+    side1: Side,
+    side2: Side,
+    limits: Limits,
     table: FloatArray,
-) -> tuple[float, float, float, float]:
-    """A root of f between values of two signs, good enough for Newton's method in three numbers."""
+) -> tuple[float, float, float]:
+    """Line's length and both peaks where f vanishes between headings at which it has two signs."""
     psi = low + (high - low) * f_low / (f_low - f_high)
     m = t1 = t2 = 0.0
-    for _ in range(10):
-        f, slope, m, t1, t2 = gap(psi, shift1, shift2, d1, d2, query, table)
-        if abs(f) < 1e-4 * (high - low):
+    close = 1e-11 * (1.0 + abs(x) + abs(y))
+    for _ in range(30):
+        f, slope, m, t1, t2 = _gap(psi, shift1, shift2, x, y, theta, side1, side2, limits, table)
+        if abs(f) < close:
             break
         if f * f_low > 0.0:
             low = psi
@@ -121,53 +151,45 @@ def _root(
             high = psi
         step = psi - f / slope if slope != 0.0 else math.nan
         psi = step if low < step < high else 0.5 * (low + high)
-    return psi, m, t1, t2
+    return m, t1, t2
 
 
 @njit(
-    "int64(float64, float64, float64, float64, UniTuple(float64, 6), float64[:, ::1], float64[:, ::1])",
+    "UniTuple(float64, 2)(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64,"
+    "UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
 )
-def lines_between(
-    low: float, high: float, d1: float, d2: float, query: Query, table: FloatArray, roots: FloatArray
-) -> int:
-    """Between two headings without a jump of f: writes rows line's length, both peaks (2, 3); returns their number."""
-    theta, a, b, s = query[2], query[3], query[4], query[5]
-    middle = 0.5 * (low + high)
-    shift1 = from_least(d1 * middle, least_deflection(d1 * a, s)) - d1 * middle
-    shift2 = from_least(d2 * (theta - middle), least_deflection(d2 * b, s)) + d2 * middle
-    f_low, slope_low, m, t1, t2 = gap(low, shift1, shift2, d1, d2, query, table)
-    if abs(f_low) < 1e-13:
-        roots[0, 0], roots[0, 1], roots[0, 2] = m, t1, t2
-        return 1
-    f_high, slope_high, m, t1, t2 = gap(high, shift1, shift2, d1, d2, query, table)
-    if abs(f_high) < 1e-13:
-        roots[0, 0], roots[0, 1], roots[0, 2] = m, t1, t2
-        return 1
-    if f_low * f_high < 0.0:
-        _, m, t1, t2 = _root(low, high, f_low, f_high, shift1, shift2, d1, d2, query, table)
-        roots[0, 0], roots[0, 1], roots[0, 2] = m, t1, t2
-        return 1
-    if f_low * slope_low >= 0.0 or f_high * slope_high <= 0.0:
-        return 0
-    # f comes nearer to 0 from both ends: is it beyond in between?
-    left = low
-    right = high
+def crossing(
+    low: float,
+    high: float,
+    f_low: float,
+    slope_low: float,
+    slope_high: float,
+    shift1: float,
+    shift2: float,
+    x: float,
+    y: float,
+    theta: float,
+    side1: Side,
+    side2: Side,
+    limits: Limits,
+    table: FloatArray,
+) -> tuple[float, float]:
+    """A heading, and f there, at which f has passed 0 between headings from which it falls towards 0; NaN: none."""
     for _ in range(6):
         share = slope_low / (slope_low - slope_high)
-        psi = left + (right - left) * min(max(share, 0.05), 0.95)
-        f, slope, m, t1, t2 = gap(psi, shift1, shift2, d1, d2, query, table)
+        psi = low + (high - low) * min(max(share, 0.05), 0.95)
+        f, slope, _, _, _ = _gap(psi, shift1, shift2, x, y, theta, side1, side2, limits, table)
         if f * f_low <= 0.0:
-            _, m, t1, t2 = _root(low, psi, f_low, f, shift1, shift2, d1, d2, query, table)
-            roots[0, 0], roots[0, 1], roots[0, 2] = m, t1, t2
-            _, m, t1, t2 = _root(psi, high, f, f_high, shift1, shift2, d1, d2, query, table)
-            roots[1, 0], roots[1, 1], roots[1, 2] = m, t1, t2
-            return 2
+            return psi, f
         if slope * slope_low > 0.0:
-            left = psi
+            low = psi
             slope_low = slope
         else:
-            right = psi
+            high = psi
             slope_high = slope
-    return 0
+        # the rest of the way is too short for the slopes left
+        if abs(f) > max(abs(slope_low), abs(slope_high)) * (high - low):
+            break
+    return math.nan, 0.0
