@@ -22,7 +22,7 @@ corners = st.floats(0.05, math.pi)
 def _followed(pieces: Pieces, steps: int = 50) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Dense points of the path, and the end points and end headings of its pieces, by the midpoint rule."""
     dense, ends, headings = [], [], []
-    for start, heading, curvature, length, turn in zip(*pieces, strict=True):
+    for start, heading, curvature, length, turn, _ in zip(*pieces, strict=True):
         h = length / steps
         middle = heading + curvature * (np.arange(steps) + 0.5) * h
         walk = start + h * np.cumsum(np.column_stack([np.cos(middle), np.sin(middle)]), axis=0)
