@@ -45,4 +45,4 @@ def shipped_or_file(source: str | Path) -> Path:
     """The file itself; where there is none, the shipped instance of that name, with or without its folder."""
     file = Path(source)
     names = {short for name in instance_names() for short in (name, name.split("/", 1)[1])}
-    return instance(str(source)) if not file.exists() and str(source) in names else file
+    return instance(str(source)) if not file.is_file() and str(source) in names else file
