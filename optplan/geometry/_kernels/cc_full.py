@@ -8,14 +8,12 @@ import numpy as np
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
-from optplan.geometry._kernels.cc_scan import LINES, lines
+from optplan.geometry._kernels.cc_scan import FACTOR, LINES, lines
 from optplan.geometry._kernels.cc_turns import from_least, limits_of, side_of
 from optplan.geometry._kernels.cc_words import CCC, CSC, newton
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
-FACTOR = 1.15
-"""Newton's method is not started from a guess this many times as long as the shortest path so far."""
 WIDE = 24
 
 
@@ -117,6 +115,7 @@ def _three_turns(
     gy = d * y - sn * ux + c * uy - cy1
     half = 0.5 * math.hypot(gx, gy)
     across = math.atan2(gy, gx)
+    distance = math.hypot(x, y)
     # small outer turns, the middle turns the rest
     t1 = max(0.15, d * a + 0.05)
     t2 = max(0.15, d * b + 0.05)
@@ -125,8 +124,12 @@ def _three_turns(
     for j in range(3):
         most = turning + j * TWO_PI
         m = math.sqrt(s * most) if s * most < 1.0 else 0.5 * (s * most + 1.0)
-        if (2.0 * (t1 + m + t2) - d * (a + b)) / s > FACTOR * shortest:
+        guess = (2.0 * (t1 + m + t2) - d * (a + b)) / s
+        if guess > FACTOR * shortest:
             break
+        # three turns that are to come this far are longer
+        if 1.2 * guess < distance:
+            continue
         good, u1, um, u2, length = newton(CCC, d, d, t1, m, t2, a, b, s, x, y, theta, table, shortest)
         if good:
             _keep(best, row, CCC, d, d, u1, um, u2, length)
@@ -188,8 +191,8 @@ def full_words(
         side_of(-1.0, b, limits, table),
     )
     found = np.empty((LINES, 5))
-    count = lines(x, y, theta, sides, limits, table, found)
     shortest = best[:, 0].min()
+    count = lines(x, y, theta, sides, limits, table, FACTOR * shortest, found)
     for i in range(count):
         if found[i, 2] >= -1e-9:
             row = int(found[i, 0])
