@@ -194,25 +194,28 @@ def full_words(
     shortest = best[:, 0].min()
     count = lines(x, y, theta, sides, limits, table, FACTOR * shortest, found)
     for i in range(count):
-        if found[i, 2] >= -1e-9:
+        if found[i, 2] >= -1e-10 and found[i, 1] > 0.0:
             row = int(found[i, 0])
             d1 = 1.0 if row == 0 or row == 2 else -1.0
             d2 = 1.0 if row == 0 or row == 3 else -1.0
             _keep(best, row, CSC, d1, d2, found[i, 3], max(found[i, 2], 0.0), found[i, 4], found[i, 1])
             shortest = min(shortest, found[i, 1])
+    distance = math.hypot(x, y)
     for i in range(count):
         row = int(found[i, 0])
         m = found[i, 2]
-        if row >= 2 or found[i, 1] > FACTOR * shortest:
+        if row >= 2:
             continue
         d1 = 1.0 - 2.0 * row
-        if m < 0.0:
-            # a line that would be driven backwards: a valley above 0 takes its place
-            m = max(-0.95, 0.5 * s * m)
-        else:
+        if m >= 0.0:
+            continue
+        # a line that would be driven backwards: a valley above 0 takes its place
+        dip = max(-0.95, 0.5 * s * m)
+        guess = (2.0 * (found[i, 3] + dip + found[i, 4]) - d1 * (a + b)) / s
+        if guess > FACTOR * shortest or 1.2 * guess < distance:
             continue
         good, u1, um, u2, length = newton(
-            CCC, d1, d1, found[i, 3], m, found[i, 4], a, b, s, x, y, theta, table, shortest
+            CCC, d1, d1, found[i, 3], dip, found[i, 4], a, b, s, x, y, theta, table, shortest
         )
         if good:
             _keep(best, 4 + row, CCC, d1, d1, u1, um, u2, length)

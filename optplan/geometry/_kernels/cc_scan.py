@@ -137,7 +137,7 @@ def lines(
                 if middle != middle:
                     continue
             # lines driven backwards lead to dips; what is much longer than a path already known leads nowhere
-            least = -math.inf if row < 2 else -1e-9
+            least = -math.inf if row < 2 else -1e-10
             worth = most + (side1[1] + side2[1]) / s
             for part in range(pieces):
                 if pieces == 1:
