@@ -21,6 +21,8 @@ from optplan.geometry._kernels.spiral import spiral_table
 REFERENCE = 6
 """row of the reference family among the words, after the six of `full_words`"""
 ROWS, COLUMNS = 7, 7
+SAME = 1e-12
+"""States that differ by less, in least radii and rad, are the same."""
 
 
 @njit("Tuple((float64[:, ::1], float64[:, ::1], float64[::1]))(float64)", cache=True, nogil=True)
@@ -82,7 +84,7 @@ def solve(
     b = min(max(end[3] / kappa, -1.0), 1.0)
     query[0], query[1], query[2], query[3], query[4] = x, y, theta, a, b
     words[:, 0] = math.inf
-    if x == 0.0 and y == 0.0 and theta == 0.0 and a == b:
+    if max(abs(x), abs(y), abs(theta), abs(a - b)) < SAME:
         return 0.0
     best = math.inf
     found = _reference(x, y, theta, a, b, s, turns)

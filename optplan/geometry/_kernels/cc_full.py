@@ -8,14 +8,12 @@ import numpy as np
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
-from optplan.geometry._kernels.cc_scan import LINES, lines
+from optplan.geometry._kernels.cc_scan import FACTOR, LINES, lines
 from optplan.geometry._kernels.cc_turns import from_least, limits_of, side_of
 from optplan.geometry._kernels.cc_words import CCC, CSC, newton
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
-FACTOR = 1.15
-"""Newton's method is not started from a guess this many times as long as the shortest path so far."""
 WIDE = 24
 
 
@@ -117,6 +115,7 @@ def _three_turns(
     gy = d * y - sn * ux + c * uy - cy1
     half = 0.5 * math.hypot(gx, gy)
     across = math.atan2(gy, gx)
+    distance = math.hypot(x, y)
     # small outer turns, the middle turns the rest
     t1 = max(0.15, d * a + 0.05)
     t2 = max(0.15, d * b + 0.05)
@@ -125,8 +124,12 @@ def _three_turns(
     for j in range(3):
         most = turning + j * TWO_PI
         m = math.sqrt(s * most) if s * most < 1.0 else 0.5 * (s * most + 1.0)
-        if (2.0 * (t1 + m + t2) - d * (a + b)) / s > FACTOR * shortest:
+        guess = (2.0 * (t1 + m + t2) - d * (a + b)) / s
+        if guess > FACTOR * shortest:
             break
+        # three turns that are to come this far are longer
+        if 1.2 * guess < distance:
+            continue
         good, u1, um, u2, length = newton(CCC, d, d, t1, m, t2, a, b, s, x, y, theta, table, shortest)
         if good:
             _keep(best, row, CCC, d, d, u1, um, u2, length)
@@ -188,28 +191,31 @@ def full_words(
         side_of(-1.0, b, limits, table),
     )
     found = np.empty((LINES, 5))
-    count = lines(x, y, theta, sides, limits, table, found)
     shortest = best[:, 0].min()
+    count = lines(x, y, theta, sides, limits, table, FACTOR * shortest, found)
     for i in range(count):
-        if found[i, 2] >= -1e-9:
+        if found[i, 2] >= -1e-10 and found[i, 1] > 0.0:
             row = int(found[i, 0])
             d1 = 1.0 if row == 0 or row == 2 else -1.0
             d2 = 1.0 if row == 0 or row == 3 else -1.0
             _keep(best, row, CSC, d1, d2, found[i, 3], max(found[i, 2], 0.0), found[i, 4], found[i, 1])
             shortest = min(shortest, found[i, 1])
+    distance = math.hypot(x, y)
     for i in range(count):
         row = int(found[i, 0])
         m = found[i, 2]
-        if row >= 2 or found[i, 1] > FACTOR * shortest:
+        if row >= 2:
             continue
         d1 = 1.0 - 2.0 * row
-        if m < 0.0:
-            # a line that would be driven backwards: a valley above 0 takes its place
-            m = max(-0.95, 0.5 * s * m)
-        else:
+        if m >= 0.0:
+            continue
+        # a line that would be driven backwards: a valley above 0 takes its place
+        dip = max(-0.95, 0.5 * s * m)
+        guess = (2.0 * (found[i, 3] + dip + found[i, 4]) - d1 * (a + b)) / s
+        if guess > FACTOR * shortest or 1.2 * guess < distance:
             continue
         good, u1, um, u2, length = newton(
-            CCC, d1, d1, found[i, 3], m, found[i, 4], a, b, s, x, y, theta, table, shortest
+            CCC, d1, d1, found[i, 3], dip, found[i, 4], a, b, s, x, y, theta, table, shortest
         )
         if good:
             _keep(best, 4 + row, CCC, d1, d1, u1, um, u2, length)

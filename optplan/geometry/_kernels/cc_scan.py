@@ -16,6 +16,8 @@ from optplan.domain.arrays import FloatArray
 from optplan.geometry._kernels.cc_turns import TWO_PI, Limits, Side, crossing, from_least, line_root, turn
 
 GRID = 8
+FACTOR = 1.2
+"""What is this many times as long as the shortest path so far is no guess of a shorter one."""
 CELLS = GRID + 4
 LINES = 48
 """room for lines: row of the word, length of the path, line's length, both peaks"""
@@ -23,7 +25,7 @@ LINES = 48
 
 @njit(
     "int64(float64, float64, float64, UniTuple(UniTuple(float64, 9), 4), UniTuple(float64, 6), float64[:, ::1],"
-    "float64[:, ::1])",
+    "float64, float64[:, ::1])",
     cache=True,
     nogil=True,
 )
@@ -34,6 +36,7 @@ def lines(
     sides: tuple[Side, Side, Side, Side],
     limits: Limits,
     table: FloatArray,
+    most: float,
     out: FloatArray,
 ) -> int:
     """Writes rows word, length, line, first and last peak (LINES, 5); returns their number.
@@ -58,6 +61,13 @@ def lines(
             psi[k] = psi[k - 1]
             k -= 1
         psi[k] = cut
+    ux = np.empty(CELLS + 1)
+    uy = np.empty(CELLS + 1)
+    for k in range(CELLS + 1):
+        ux[k] = math.cos(psi[k])
+        uy[k] = math.sin(psi[k])
+    c_end = math.cos(theta)
+    s_end = math.sin(theta)
     # h, g, g_c and shift of each turn at both ends of each cell
     values = np.empty((4, CELLS, 7))
     for i in range(4):
@@ -75,7 +85,10 @@ def lines(
                 off = d * (psi[k + e] - origin)
                 delta = max(off + shift, side[2])
                 if e == 1 or not abs(delta - last) < 1e-9:
-                    h, g, gc, _ = turn(delta, math.cos(off), math.sin(off), side, limits, table)
+                    # cosine and sine of psi, or of psi - theta
+                    c = ux[k + e] if i < 2 else c_end * ux[k + e] + s_end * uy[k + e]
+                    sn = uy[k + e] if i < 2 else c_end * uy[k + e] - s_end * ux[k + e]
+                    h, g, gc, _ = turn(delta, c, d * sn, side, limits, table)
                     last = delta
                 values[i, k, 3 * e] = side[0] * h
                 values[i, k, 3 * e + 1] = g
@@ -89,14 +102,10 @@ def lines(
         right = psi[k + 1]
         if right - left < 1e-12:
             continue
-        ux = math.cos(left)
-        uy = math.sin(left)
-        across0 = ux * y - uy * x
-        along0 = ux * x + uy * y
-        ux = math.cos(right)
-        uy = math.sin(right)
-        across1 = ux * y - uy * x
-        along1 = ux * x + uy * y
+        across0 = ux[k] * y - uy[k] * x
+        along0 = ux[k] * x + uy[k] * y
+        across1 = ux[k + 1] * y - uy[k + 1] * x
+        along1 = ux[k + 1] * x + uy[k + 1] * y
         for row in range(4):
             i1 = row & 1
             i2 = 2 + (i1 if row < 2 else 1 - i1)
@@ -127,22 +136,57 @@ def lines(
                 )
                 if middle != middle:
                     continue
+            # lines driven backwards lead to dips; what is much longer than a path already known leads nowhere
+            least = -math.inf if row < 2 else -1e-10
+            worth = most + (side1[1] + side2[1]) / s
             for part in range(pieces):
                 if pieces == 1:
-                    m, t1, t2 = line_root(left, right, f0, f1, shift1, shift2, x, y, theta, side1, side2, limits, table)
+                    m, t1, t2 = line_root(
+                        left, right, f0, f1, shift1, shift2, x, y, theta, least, worth, side1, side2, limits, table
+                    )
                 elif part == 0:
                     m, t1, t2 = line_root(
-                        left, middle, f0, f_middle, shift1, shift2, x, y, theta, side1, side2, limits, table
+                        left,
+                        middle,
+                        f0,
+                        f_middle,
+                        shift1,
+                        shift2,
+                        x,
+                        y,
+                        theta,
+                        least,
+                        worth,
+                        side1,
+                        side2,
+                        limits,
+                        table,
                     )
                 else:
                     m, t1, t2 = line_root(
-                        middle, right, f_middle, f1, shift1, shift2, x, y, theta, side1, side2, limits, table
+                        middle,
+                        right,
+                        f_middle,
+                        f1,
+                        shift1,
+                        shift2,
+                        x,
+                        y,
+                        theta,
+                        least,
+                        worth,
+                        side1,
+                        side2,
+                        limits,
+                        table,
                     )
-                if (m >= -1e-9 or row < 2) and count < LINES:
+                if m >= least and count < LINES:
                     out[count, 0] = row
                     out[count, 1] = m + (2.0 * (t1 + t2) - side1[1] - side2[1]) / s
                     out[count, 2] = m
                     out[count, 3] = t1
                     out[count, 4] = t2
+                    if m >= 0.0:
+                        most = min(most, FACTOR * out[count, 1])
                     count += 1
     return count

@@ -118,6 +118,7 @@ def _gap(
 
 @njit(
     "UniTuple(float64, 3)(float64, float64, float64, float64, float64, float64, float64, float64, float64,"
+    "float64, float64,"
     "UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
@@ -132,12 +133,17 @@ def line_root(
     x: float,
     y: float,
     theta: float,
+    least: float,
+    most: float,
     side1: Side,
     side2: Side,
     limits: Limits,
     table: FloatArray,
 ) -> tuple[float, float, float]:
-    """Line's length and both peaks where f vanishes between headings at which it has two signs."""
+    """Line's length and both peaks where f vanishes between headings at which it has two signs.
+
+    NaN once it is clear that the line is shorter than `least`, or the path, from the least turns on, longer than `most`.
+    """
     psi = low + (high - low) * f_low / (f_low - f_high)
     m = t1 = t2 = 0.0
     close = 1e-11 * (1.0 + abs(x) + abs(y))
@@ -145,6 +151,10 @@ def line_root(
         f, slope, m, t1, t2 = _gap(psi, shift1, shift2, x, y, theta, side1, side2, limits, table)
         if abs(f) < close:
             break
+        # how far the root may be: generous, the slope of both is about a metre a radian
+        slack = 0.2 + 4.0 * abs(f)
+        if m + slack < least or m - slack + 2.0 * (t1 + t2) / limits[0] > most:
+            return math.nan, t1, t2
         if f * f_low > 0.0:
             low = psi
         else:

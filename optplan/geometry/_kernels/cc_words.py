@@ -182,7 +182,9 @@ def newton(
         if error <= CLOSE * size:
             good = min(min(rise, fall), min(rise2, fall2)) >= -1e-11 and (kind == CCC or m >= -1e-11 * size)
             return good, t1, m, t2, length
-        if step > 3 and length - 2.0 * (abs(ex) + abs(ey)) > longest:
+        if step > 2 and error > 0.5 * size:
+            break
+        if step > 2 and length - 2.0 * (abs(ex) + abs(ey)) > longest:
             break
         # columns: what a metre more at each place does to the end
         q11 = c1 - p1 * (y - jy1)
