@@ -9,8 +9,8 @@ import numpy as np
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
 from optplan.geometry._kernels.cc_scan import FACTOR, LINES, lines
-from optplan.geometry._kernels.cc_turns import from_least, limits_of, side_of
-from optplan.geometry._kernels.cc_words import CCC, CSC, newton
+from optplan.geometry._kernels.cc_turns import Limits, Side, from_least, limits_of, side_of
+from optplan.geometry._kernels.cc_words import CCC, CSC, three_extrema
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
@@ -74,68 +74,79 @@ def _extended(t: float, s: float) -> float:
 
 
 @njit(
-    "float64(float64, float64, float64, float64, float64, float64, float64, float64[:, ::1], float64[:, ::1], "
-    "float64[:, ::1], float64)",
+    "void(int64, float64, float64, float64, float64, float64, float64, UniTuple(float64, 9), UniTuple(float64, 9),"
+    "UniTuple(float64, 6), float64[:, ::1], float64, float64[:, ::1], float64)",
+    cache=True,
+    nogil=True,
+)
+def _try(
+    row: int,
+    t1: float,
+    m: float,
+    t2: float,
+    x: float,
+    y: float,
+    theta: float,
+    side1: Side,
+    side2: Side,
+    limits: Limits,
+    table: FloatArray,
+    distance: float,
+    best: FloatArray,
+    bound: float,
+) -> None:
+    """Starts Newton's method unless the guess is much too long, or too short to come this far."""
+    guess = (2.0 * (t1 + m + t2) - side1[1] - side2[1]) / limits[0]
+    if guess > FACTOR * bound or 1.2 * guess < distance:
+        return
+    length, t1, m, t2 = three_extrema(t1, m, t2, x, y, theta, side1, side2, limits, table, bound)
+    _keep(best, row, CCC, side1[0], side1[0], t1, m, t2, length)
+
+
+@njit(
+    "void(int64, float64, float64, float64, UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6),"
+    "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64)",
     cache=True,
     nogil=True,
 )
 def _three_turns(
+    row: int,
     x: float,
     y: float,
     theta: float,
-    a: float,
-    b: float,
-    s: float,
-    d: float,
+    side1: Side,
+    side2: Side,
+    limits: Limits,
     table: FloatArray,
     middles: FloatArray,
     best: FloatArray,
-    shortest: float,
-) -> float:
-    """CCC words from circles at the limit: the middle must span their centres."""
-    row = 4 if d > 0.0 else 5
-    # centres of the circles, mirrored so that the outer turns are left
-    ex1, ey1 = spiral(table, 1.0)
-    ea_x, ea_y = spiral(table, d * a)
-    eb_x, eb_y = spiral(table, d * b)
-    ta = 0.5 * (1.0 - a * a) / s
-    tb = 0.5 * (1.0 - b * b) / s
-    c = math.cos(0.5 * a * a / s)
-    sn = -math.sin(0.5 * a * a / s)
-    cx1 = c * (ex1 - ea_x) - sn * (ey1 - ea_y) - math.sin(ta)
-    cy1 = sn * (ex1 - ea_x) + c * (ey1 - ea_y) + math.cos(ta)
-    c = math.cos(0.5 * b * b / s)
-    sn = -math.sin(0.5 * b * b / s)
-    ux = c * (ex1 - eb_x) - sn * (ey1 - eb_y) - math.sin(tb)
-    uy = sn * (ex1 - eb_x) + c * (ey1 - eb_y) + math.cos(tb)
-    end = d * theta
-    c = math.cos(end)
-    sn = math.sin(end)
-    gx = x - c * ux - sn * uy - cx1
-    gy = d * y - sn * ux + c * uy - cy1
-    half = 0.5 * math.hypot(gx, gy)
-    across = math.atan2(gy, gx)
+    bound: float,
+) -> None:
+    """CCC words of two guesses: small outer turns, and circles at the limit whose centres the middle spans.
+
+    Mirrored for RLR. Guesses much above `bound` are left out; it does not change on the way, so that a reversed query
+    tries the same ones.
+    """
+    s = limits[0]
+    a = side1[1]
+    b = side2[1]
     distance = math.hypot(x, y)
-    # small outer turns, the middle turns the rest
-    t1 = max(0.15, d * a + 0.05)
-    t2 = max(0.15, d * b + 0.05)
-    turning = _extended(t1, s) + _extended(t2, s) - 0.5 * (a * a + b * b) / s - end
-    turning = from_least(turning, 0.0)
+    t1 = max(0.15, a + 0.05)
+    t2 = max(0.15, b + 0.05)
+    turning = from_least(_extended(t1, s) + _extended(t2, s) - 0.5 * (a * a + b * b) / s - theta, 0.0)
     for j in range(3):
         most = turning + j * TWO_PI
         m = math.sqrt(s * most) if s * most < 1.0 else 0.5 * (s * most + 1.0)
-        guess = (2.0 * (t1 + m + t2) - d * (a + b)) / s
-        if guess > FACTOR * shortest:
-            break
-        # three turns that are to come this far are longer
-        if 1.2 * guess < distance:
-            continue
-        good, u1, um, u2, length = newton(CCC, d, d, t1, m, t2, a, b, s, x, y, theta, table, shortest)
-        if good:
-            _keep(best, row, CCC, d, d, u1, um, u2, length)
-            shortest = min(shortest, length)
-    n = len(middles)
-    for i in range(n - 1):
+        _try(row, t1, m, t2, x, y, theta, side1, side2, limits, table, distance, best, bound)
+    c = math.cos(theta)
+    sn = math.sin(theta)
+    gx = x - c * side2[7] - sn * side2[8] - side1[7]
+    gy = y - sn * side2[7] + c * side2[8] - side1[8]
+    half = 0.5 * math.hypot(gx, gy)
+    across = math.atan2(gy, gx)
+    ta = 0.5 * (1.0 - a * a) / s
+    tb = 0.5 * (1.0 - b * b) / s
+    for i in range(len(middles) - 1):
         for way in range(2):
             sign = 1.0 - 2.0 * way
             f0 = sign * middles[i, 1] - half
@@ -147,19 +158,14 @@ def _three_turns(
             turned = middles[i, 2] + u * (middles[i + 1, 2] - middles[i, 2])
             chi = across + math.pi * way
             arc1 = from_least(chi - turned - ta, 0.0)
-            arc2 = from_least(end - chi - turned - tb, 0.0)
+            arc2 = from_least(theta - chi - turned - tb, 0.0)
             for j in range(4):
                 t1 = 1.0 + 0.5 * s * (arc1 - TWO_PI * (j & 1))
                 t2 = 1.0 + 0.5 * s * (arc2 - TWO_PI * (j >> 1))
-                if t1 < -w or t2 < -w or (2.0 * (t1 + w + t2) - d * (a + b)) / s > FACTOR * shortest:
-                    continue
-                good, u1, um, u2, length = newton(
-                    CCC, d, d, max(t1, 0.1), w, max(t2, 0.1), a, b, s, x, y, theta, table, shortest
-                )
-                if good:
-                    _keep(best, row, CCC, d, d, u1, um, u2, length)
-                    shortest = min(shortest, length)
-    return shortest
+                if t1 >= -w and t2 >= -w:
+                    t1 = max(t1, 0.1)
+                    t2 = max(t2, 0.1)
+                    _try(row, t1, w, t2, x, y, theta, side1, side2, limits, table, distance, best, bound)
 
 
 @njit(
@@ -204,21 +210,38 @@ def full_words(
     for i in range(count):
         row = int(found[i, 0])
         m = found[i, 2]
-        if row >= 2:
-            continue
-        d1 = 1.0 - 2.0 * row
-        if m >= 0.0:
-            continue
-        # a line that would be driven backwards: a valley above 0 takes its place
-        dip = max(-0.95, 0.5 * s * m)
-        guess = (2.0 * (found[i, 3] + dip + found[i, 4]) - d1 * (a + b)) / s
-        if guess > FACTOR * shortest or 1.2 * guess < distance:
-            continue
-        good, u1, um, u2, length = newton(
-            CCC, d1, d1, found[i, 3], dip, found[i, 4], a, b, s, x, y, theta, table, shortest
-        )
-        if good:
-            _keep(best, 4 + row, CCC, d1, d1, u1, um, u2, length)
-            shortest = min(shortest, length)
+        if row < 2 and m < 0.0:
+            # a line that would be driven backwards: a valley above 0 takes its place
+            d = 1.0 - 2.0 * row
+            m = max(-0.95, 0.5 * s * m)
+            _try(
+                4 + row,
+                found[i, 3],
+                m,
+                found[i, 4],
+                x,
+                d * y,
+                d * theta,
+                sides[0] if row == 0 else sides[1],
+                sides[2] if row == 0 else sides[3],
+                limits,
+                table,
+                distance,
+                best,
+                shortest,
+            )
     for row in range(2):
-        shortest = min(shortest, _three_turns(x, y, theta, a, b, s, 1.0 - 2.0 * row, table, middles, best, shortest))
+        d = 1.0 - 2.0 * row
+        _three_turns(
+            4 + row,
+            x,
+            d * y,
+            d * theta,
+            sides[0] if row == 0 else sides[1],
+            sides[2] if row == 0 else sides[3],
+            limits,
+            table,
+            middles,
+            best,
+            shortest,
+        )

@@ -14,7 +14,7 @@ import math
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
-from optplan.geometry._kernels.clothoid import clothoid_end
+from optplan.geometry._kernels.cc_turns import Limits, Side
 from optplan.geometry._kernels.spiral import spiral
 
 CSC, CCC = 0, 1
@@ -60,158 +60,122 @@ def word_pieces(
     return n + 1
 
 
-@njit("UniTuple(float64, 4)(float64[:, ::1], int64, float64)", cache=True, nogil=True)
-def drive(pieces: FloatArray, n: int, a: float) -> tuple[float, float, float, float]:
-    """The exact end of pieces that start in the origin, and the length driven; the least piece decides on its sign."""
-    x = y = theta = 0.0
-    length = 0.0
-    for i in range(n):
-        x, y, theta, _ = clothoid_end(x, y, theta, pieces[i, 0], pieces[i, 1], pieces[i, 2])
-        length += pieces[i, 2]
-    return x, y, theta, length
-
-
 @njit(
-    "UniTuple(float64, 3)(float64[:, ::1], float64, float64, float64, float64, float64, float64, float64)",
+    "UniTuple(float64, 8)(float64, float64, UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
 )
-def _clothoid(
-    table: FloatArray, s: float, x: float, y: float, theta: float, k0: float, k1: float, rate: float
-) -> tuple[float, float, float]:
-    """Place and heading after the clothoid from curvature k0 to k1 at sharpness `rate` (s or -s)."""
-    x0, y0 = spiral(table, k0)
-    x1, y1 = spiral(table, k1)
-    turned = 0.5 * k0 * k0 / rate
-    c = math.cos(theta - turned)
-    sn = math.sin(theta - turned)
-    dx = x1 - x0
-    dy = y1 - y0
-    if rate < 0.0:
-        dx = -dx
-    return x + c * dx - sn * dy, y + sn * dx + c * dy, theta - turned + 0.5 * k1 * k1 / rate
+def _half(
+    t: float, m: float, side: Side, limits: Limits, table: FloatArray
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """From an end over its peak to the middle of a CCC word, from the origin and with the peak to the left.
+
+    Place, heading, its cosine and sine; and how a metre more at the peak (curvature top) moves the place: x, y, top.
+    """
+    _, a, _, ox, oy, ca, sa, _, _ = side
+    s, _, _, half, _, _ = limits
+    top = min(t, 1.0)
+    ex, ey = spiral(table, top)
+    x = ca * ex - sa * ey + ox
+    y = sa * ex + ca * ey + oy
+    theta = half * (top * top - a * a)
+    c = math.cos(theta)
+    sn = math.sin(theta)
+    jx, jy, jc, js = x, y, c, sn
+    if t > 1.0:
+        theta += 2.0 * (t - 1.0) / s
+        c = math.cos(theta)
+        sn = math.sin(theta)
+        x += sn - js
+        y -= c - jc
+    k = -min(m, 1.0)
+    ux, uy = spiral(table, k)
+    dx = ex - ux
+    dy = uy - ey
+    theta += half * top * top
+    c = math.cos(theta)
+    sn = math.sin(theta)
+    x += c * dx - sn * dy
+    y += sn * dx + c * dy
+    theta -= half * k * k
+    c = math.cos(theta)
+    sn = math.sin(theta)
+    if m > 1.0:
+        theta -= (m - 1.0) / s
+        bx = sn
+        by = c
+        c = math.cos(theta)
+        sn = math.sin(theta)
+        x -= sn - bx
+        y += c - by
+    return x, y, theta, c, sn, jc - top * (y - jy), js + top * (x - jx), top
 
 
 @njit(
-    "Tuple((boolean, float64, float64, float64, float64))(int64, float64, float64, float64, float64, float64, "
-    "float64, float64, float64, float64, float64, float64, float64[:, ::1], float64)",
+    "UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64, UniTuple(float64, 9),"
+    "UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1], float64)",
     cache=True,
     nogil=True,
 )
-def newton(
-    kind: int,
-    d1: float,
-    d2: float,
+def three_extrema(
     t1: float,
     m: float,
     t2: float,
-    a: float,
-    b: float,
-    s: float,
-    x_end: float,
-    y_end: float,
-    theta_end: float,
+    x: float,
+    y: float,
+    theta: float,
+    side1: Side,
+    side2: Side,
+    limits: Limits,
     table: FloatArray,
     longest: float,
-) -> tuple[bool, float, float, float, float]:
-    """Solves a word for its end: whether it is one, its three numbers, its length. Stops above length `longest`."""
-    unit = 2.0 / s
+) -> tuple[float, float, float, float]:
+    """Newton's method for a CCC word: its length (inf: none, or above `longest`), and its extrema.
+
+    Both halves are driven from their ends; how they miss each other in the middle is the residual. So a reversed query
+    takes the same steps. x, y, theta are mirrored for a word whose outer turns are to the right.
+    """
+    s = limits[0]
+    a = side1[1]
+    b = side2[1]
+    c_end = math.cos(theta)
+    s_end = math.sin(theta)
+    # a step of much more than about a radian, or than half the way to the limit, is not to be trusted
+    cap = 1.0 + 1.2 / s
     for step in range(STEPS):
-        t1 = max(t1, -1.0)
-        t2 = max(t2, -1.0)
-        # the first extremum
-        p1 = d1 * min(t1, 1.0)
-        x, y, theta = _clothoid(table, s, 0.0, 0.0, 0.0, a, p1, d1 * s)
-        jx1, jy1, jt1 = x, y, theta
-        c1 = math.cos(theta)
-        s1 = math.sin(theta)
-        if t1 > 1.0:
-            arc = (t1 - 1.0) * unit
-            theta += d1 * arc
-            x += d1 * (math.sin(theta) - s1)
-            y -= d1 * (math.cos(theta) - c1)
-        if kind == CSC:
-            x, y, theta = _clothoid(table, s, x, y, theta, p1, 0.0, -d1 * s)
-            jx2, jy2 = x, y
-            c2 = math.cos(theta)
-            s2 = math.sin(theta)
-            k2 = 0.0
-            x += m * c2
-            y += m * s2
-            p2 = d2 * min(t2, 1.0)
-            x, y, theta = _clothoid(table, s, x, y, theta, 0.0, p2, d2 * s)
-            length = (2.0 * t1 - d1 * a) / s + m + (2.0 * t2 - d2 * b) / s
-            rise = min(t1, 1.0) - d1 * a
-            fall = min(t2, 1.0) - d2 * b
-            rise2 = min(t1, 1.0)
-            fall2 = min(t2, 1.0)
-        else:
-            m = max(m, -1.0)
-            k2 = -d1 * min(m, 1.0)
-            x, y, theta = _clothoid(table, s, x, y, theta, p1, k2, -d1 * s)
-            jx2, jy2 = x, y
-            c2 = math.cos(theta)
-            s2 = math.sin(theta)
-            if m > 1.0:
-                arc = (m - 1.0) * unit
-                theta -= d1 * arc
-                x -= d1 * (math.sin(theta) - s2)
-                y += d1 * (math.cos(theta) - c2)
-            p2 = d2 * min(t2, 1.0)
-            x, y, theta = _clothoid(table, s, x, y, theta, k2, p2, d2 * s)
-            length = (2.0 * (t1 + m + t2) - d1 * a - d2 * b) / s
-            rise = min(t1, 1.0) - d1 * a
-            fall = min(t2, 1.0) - d2 * b
-            rise2 = min(t1, 1.0) + min(m, 1.0)
-            fall2 = min(t2, 1.0) + min(m, 1.0)
-        jx3, jy3 = x, y
-        c3 = math.cos(theta)
-        s3 = math.sin(theta)
-        if t2 > 1.0:
-            arc = (t2 - 1.0) * unit
-            theta += d2 * arc
-            x += d2 * (math.sin(theta) - s3)
-            y -= d2 * (math.cos(theta) - c3)
-        x, y, theta = _clothoid(table, s, x, y, theta, p2, b, -d2 * s)
-        ex = x_end - x
-        ey = y_end - y
-        et = theta_end - theta
+        length = (2.0 * (t1 + m + t2) - a - b) / s
+        x1, y1, h1, c1, s1, q11, q21, p1 = _half(t1, m, side1, limits, table)
+        x2, y2, h2, c2, s2, vx, vy, p2 = _half(t2, m, side2, limits, table)
+        ex = x - c_end * x2 - s_end * y2 - x1
+        ey = y - s_end * x2 + c_end * y2 - y1
+        et = theta - h2 - h1
         et -= TWO_PI * math.floor(et / TWO_PI + 0.5)
         size = 1.0 + abs(length)
         error = abs(ex) + abs(ey) + size * abs(et)
+        k = -min(m, 1.0)
         if error <= CLOSE * size:
-            good = min(min(rise, fall), min(rise2, fall2)) >= -1e-11 and (kind == CCC or m >= -1e-11 * size)
-            return good, t1, m, t2, length
-        if step > 2 and error > 0.5 * size:
+            # an extremum that is not one: its clothoids would be driven backwards
+            if min(p1 - max(a, k), p2 - max(b, k)) < -1e-11 or length <= 0.0 or length > longest:
+                break
+            return length, t1, m, t2
+        if step > 2 and (error > 0.5 * size or length - 2.0 * (abs(ex) + abs(ey)) > longest):
             break
-        if step > 2 and length - 2.0 * (abs(ex) + abs(ey)) > longest:
-            break
-        # columns: what a metre more at each place does to the end
-        q11 = c1 - p1 * (y - jy1)
-        q21 = s1 + p1 * (x - jx1)
-        q12 = c2 - k2 * (y - jy2)
-        q22 = s2 + k2 * (x - jx2)
-        q13 = c3 - p2 * (y - jy3)
-        q23 = s3 + p2 * (x - jx3)
-        m1 = q22 * p2 - q23 * k2
+        q13 = c_end * vx + s_end * vy
+        q23 = s_end * vx - c_end * vy
+        q12 = 0.5 * (c1 + c_end * c2 + s_end * s2)
+        q22 = 0.5 * (s1 + s_end * c2 - c_end * s2)
+        m1 = q22 * p2 - q23 * k
         m2 = q23 * p1 - q21 * p2
-        m3 = q21 * k2 - q22 * p1
+        m3 = q21 * k - q22 * p1
         det = q11 * m1 + q12 * m2 + q13 * m3
         if abs(det) < 1e-14:
-            return False, t1, m, t2, math.inf
-        g1 = (ex * m1 + q12 * (q23 * et - ey * p2) + q13 * (ey * k2 - q22 * et)) / det
+            break
+        g1 = (ex * m1 + q12 * (q23 * et - ey * p2) + q13 * (ey * k - q22 * et)) / det
         g2 = (q11 * (ey * p2 - q23 * et) + ex * m2 + q13 * (q21 * et - ey * p1)) / det
-        g3 = (q11 * (q22 * et - ey * k2) + q12 * (ey * p1 - q21 * et) + ex * m3) / det
-        # a step of more than about a radian, or most of the way to the limit, is not to be trusted
-        cap = 1.0 + 0.6 * unit
-        largest = max(abs(g1), abs(g3))
-        if kind == CCC:
-            largest = max(largest, abs(g2))
-        if largest > cap:
-            g1 *= cap / largest
-            g2 *= cap / largest
-            g3 *= cap / largest
-        t1 += g1 / unit
-        t2 += g3 / unit
-        m += g2 if kind == CSC else g2 / unit
-    return False, t1, m, t2, math.inf
+        g3 = (q11 * (q22 * et - ey * k) + q12 * (ey * p1 - q21 * et) + ex * m3) / det
+        largest = max(max(abs(g1), abs(g3)), abs(g2))
+        scale = 0.5 * s * (cap / largest if largest > cap else 1.0)
+        t1 = max(t1 + g1 * scale, -1.0)
+        m = max(m + g2 * scale, -1.0)
+        t2 = max(t2 + g3 * scale, -1.0)
+    return math.inf, t1, m, t2
