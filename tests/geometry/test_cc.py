@@ -113,11 +113,11 @@ def test_there_is_always_a_path(difficulty: float) -> None:
     for box in (0.0, 1e-3, 1.0, 10.0):
         starts, ends = states(random, 2000, box, 1.1), states(random, 2000, box, 1.1)
         for family in ("full", "reference"):
-            lengths = cc_lengths(starts, ends, 1.1, 1.21 / difficulty, family)  # type: ignore[arg-type]
+            lengths = cc_lengths(starts, ends, 1.1, 1.21 / difficulty, family)
             assert np.isfinite(lengths).all()
             assert (lengths >= cc_lower_bounds(starts, ends, 1.1) * (1 - 1e-9)).all()
             for start, end, length in zip(starts[:60], ends[:60], lengths[:60], strict=True):
-                path = cc_path(start, end, 1.1, 1.21 / difficulty, family)  # type: ignore[arg-type]
+                path = cc_path(start, end, 1.1, 1.21 / difficulty, family)
                 check(path, end, 1.1, 1.21 / difficulty)
                 assert path.length == pytest.approx(length, rel=1e-9)
 
@@ -125,7 +125,8 @@ def test_there_is_always_a_path(difficulty: float) -> None:
 def test_no_way_is_no_path() -> None:
     state = np.array([1.0, 2.0, 3.0, 0.4])
     path = cc_path(state, state, 1.0, 1.0)
-    assert path.length == 0.0 and len(path.lengths) == 0
+    assert path.length == 0.0
+    assert len(path.lengths) == 0
     assert cc_lengths(state[None], state[None], 1.0, 1.0)[0] == 0.0
 
 
@@ -134,7 +135,8 @@ def test_straight_on_is_a_line() -> None:
         path = cc_path(
             np.array([1.0, 1, 0.5, 0]), np.array([1 + 3 * math.cos(0.5), 1 + 3 * math.sin(0.5), 0.5, 0]), 1, 1, family
         )
-        assert path.length == pytest.approx(3.0, rel=1e-12) and len(path.lengths) == 1
+        assert path.length == pytest.approx(3.0, rel=1e-12)
+        assert len(path.lengths) == 1
 
 
 @pytest.mark.parametrize("curvature", [0.0, 0.7, -1.0])
@@ -193,7 +195,8 @@ def test_known_lengths() -> None:
     assert curved.mean() <= 0.85
     # a handful of listed words have four extrema; they are shorter by 0.2 % at most
     for found in (curved, ratios("ccarb.csv", "cc_len", "full")):
-        assert np.mean(found <= 1 + 1e-9) >= 0.99 and found.max() <= 1.003
+        assert np.mean(found <= 1 + 1e-9) >= 0.99
+        assert found.max() <= 1.003
 
 
 @known

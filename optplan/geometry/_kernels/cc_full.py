@@ -21,9 +21,9 @@ WIDE = 24
 def middle_table(s: float, table: FloatArray) -> FloatArray:
     """Rows w, reach, turned of the half of a CCC's middle, from the circle at the limit to its extremum (n, 3).
 
-    w is the extended valley, from -1 (curvature stays at the limit) past 1 (arc against the turn). Seen from the middle,
-    where the heading is 0, `reach` is how far ahead the middle is of the first circle's centre, and `turned` by how
-    much the heading grows from the limit's end to the middle.
+    w is the extended valley, from -1 (curvature stays at the limit) past 1 (arc against the turn). Seen from the
+    middle, where the heading is 0, `reach` is how far ahead the middle is of the first circle's centre, and
+    `turned` by how much the heading grows from the limit's end to the middle.
     """
     n = WIDE
     rows = np.empty((2 * n, 3))

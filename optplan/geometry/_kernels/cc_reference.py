@@ -23,7 +23,7 @@ from optplan.geometry._kernels.spiral import spiral
 S, T, TT, TST, TTT = range(5)
 TWO_PI = 2.0 * math.pi
 SMALL = 4.5948
-"""rad; two symmetric clothoids from curvature 0 to 0 meet their chord up to this deflection only (Scheuer, Fraichard)"""
+"""rad; two symmetric clothoids from curvature 0 to 0 meet their chord up to this deflection (Scheuer, Fraichard)"""
 SNAP = 1e-9
 EXACT = 1e-12
 STRAIGHT = 1e-10
@@ -118,8 +118,8 @@ def turn_length(delta: float, turns: FloatArray) -> float:
         )
         small = 2.0 * turns[2] * math.sin(0.5 * delta + turns[3]) / small
         if small < regular:
-            return small
-    return regular
+            return float(small)
+    return float(regular)
 
 
 @njit(

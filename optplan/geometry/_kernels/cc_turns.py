@@ -16,16 +16,14 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
 Side = tuple[float, float, float, float, float, float, float, float, float]
-"""d (1: left), a seen as a left turn, least deflection, exp(-i a^2 / 2s) E(a) negated (x, y), cos and sin of that angle,
-centre of the circle at the limit (x, y)"""
+"""d (1: left), a seen as a left turn, least deflection, exp(-i a^2 / 2s) E(a) negated (x, y), cos and sin of that
+angle, centre of the circle at the limit (x, y)"""
 Limits = tuple[float, float, float, float, float, float]
 """s, E(1), 1 / 2s, and g and h of a held turn's inner end seen from its circle's centre"""
 
@@ -48,7 +46,7 @@ def limits_of(s: float, table: FloatArray) -> Limits:
 @njit("UniTuple(float64, 9)(float64, float64, UniTuple(float64, 6), float64[:, ::1])", cache=True, nogil=True)
 def side_of(d: float, curvature: float, limits: Limits, table: FloatArray) -> Side:
     """What all turns to side d from the same end share."""
-    s, ex, ey, half, _, _ = limits
+    _s, ex, ey, half, _, _ = limits
     a = d * curvature
     angle = half * a * a
     c = math.cos(angle)
@@ -142,7 +140,8 @@ def line_root(
 ) -> tuple[float, float, float]:
     """Line's length and both peaks where f vanishes between headings at which it has two signs.
 
-    NaN once it is clear that the line is shorter than `least`, or the path, from the least turns on, longer than `most`.
+    NaN once it is clear that the line is shorter than `least`, or the path, from the least turns on, longer than
+    `most`.
     """
     psi = low + (high - low) * f_low / (f_low - f_high)
     m = t1 = t2 = 0.0
