@@ -17,8 +17,8 @@ from optplan.domain.errors import InputError
 
 Family = Literal["full", "reference"]
 WORDS = ("LSL", "RSR", "LSR", "RSL", "LRL", "RLR")
-END_POSITION = 1e-9
-"""m, or of the path's length where that is more: a found path that misses its end by more is not returned"""
+END_POSITION, END_SHARE, END_HEADING = 1e-9, 1e-11, 1e-9
+"""m, of the path's length (the larger of both), rad: a word that misses its end by more is passed over"""
 SLICE = 20_000
 """queries between two looks at whether a cancel has come: 0.2 s"""
 EMPTY = 1e-15
@@ -71,16 +71,21 @@ def cc_path(start: FloatArray, end: FloatArray, curvature: float, sharpness: flo
         none = np.empty(0)
         return CCPath("", 0.0, first, none, none, none, ())
     order = [int(row) for row in np.argsort(words[:, 0], kind="stable") if math.isfinite(words[row, 0])]
+    misses = {}
     for row in order:
         count = kernels.pieces_of(words[row], query, row, s, table, turns, pieces)
-        kept = pieces[:count][pieces[:count, 2] > EMPTY * words[row, 0]]
         x, y, heading = 0.0, 0.0, 0.0
-        for kappa, sigma, part in kept:
+        for kappa, sigma, part in pieces[:count]:
             x, y, heading, _ = clothoid_end(x, y, heading, kappa, sigma, part)
-        tolerance = max(END_POSITION * curvature, 1e-13 * words[row, 0])
+        tolerance = max(END_POSITION * curvature, END_SHARE * words[row, 0])
         turned = math.remainder(heading - query[2], 2 * math.pi)
-        if math.hypot(x - query[0], y - query[1]) <= tolerance and abs(turned) <= END_POSITION:
+        misses[row] = max(math.hypot(x - query[0], y - query[1]) / tolerance, abs(turned) / END_HEADING)
+        if misses[row] <= 1.0:
             break
+    # roots are found to rounding, so the first one does; if none did, the best of them is returned
+    row = min(misses, key=lambda row: misses[row])
+    count = kernels.pieces_of(words[row], query, row, s, table, turns, pieces)
+    kept = pieces[:count][pieces[:count, 2] > EMPTY * words[row, 0]]
     name = _name(row, words[row])
     return CCPath(
         name,

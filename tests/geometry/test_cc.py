@@ -18,6 +18,7 @@ from optplan.geometry.cc import CCPath, Family, cc_lengths, cc_lower_bounds, cc_
 
 DATA = Path(__file__).parents[3] / "shared" / "data" / "connectors"
 known = pytest.mark.skipif(not DATA.is_dir(), reason="the lists of known lengths are not here")
+FAMILIES: tuple[Family, ...] = ("full", "reference")
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 shares = st.one_of(st.sampled_from([0.0, 1.0, -1.0]), st.floats(-1, 1))
@@ -110,9 +111,9 @@ def test_moved_mirrored_reversed_and_scaled_queries_are_as_long(
 @pytest.mark.parametrize("difficulty", [0.05, 0.6, 1.2, 2.0, 5.0, 10.0])
 def test_there_is_always_a_path(difficulty: float) -> None:
     random = np.random.default_rng(int(10 * difficulty))
-    for box in (0.0, 1e-3, 1.0, 10.0):
+    for box in (0.0, 1e-6, 1e-3, 1.0, 10.0):
         starts, ends = states(random, 2000, box, 1.1), states(random, 2000, box, 1.1)
-        for family in ("full", "reference"):
+        for family in FAMILIES:
             lengths = cc_lengths(starts, ends, 1.1, 1.21 / difficulty, family)
             assert np.isfinite(lengths).all()
             assert (lengths >= cc_lower_bounds(starts, ends, 1.1) * (1 - 1e-9)).all()
@@ -131,7 +132,7 @@ def test_no_way_is_no_path() -> None:
 
 
 def test_straight_on_is_a_line() -> None:
-    for family in ("full", "reference"):
+    for family in FAMILIES:
         path = cc_path(
             np.array([1.0, 1, 0.5, 0]), np.array([1 + 3 * math.cos(0.5), 1 + 3 * math.sin(0.5), 0.5, 0]), 1, 1, family
         )
@@ -148,6 +149,32 @@ def test_a_clothoid_that_joins_two_states_is_found(curvature: float) -> None:
     end = np.array(clothoid_end(*bend[:3], 0.0, 0.0, 2.0))
     path = cc_path(np.array([0, 0, 0, curvature]), end, 1.0, 1.0)
     assert path.length == pytest.approx(abs(curvature) + 2.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("curvature", "pieces"),
+    [
+        (0.5, [(1, 0.3), (-1, 0.3)]),
+        (0.5, [(1, 0.5), (0, 1.0), (-1, 0.5)]),
+        (1.0, [(0, 1.0)]),
+        (0.5, [(0, 1.0)]),
+        (0.2, [(1, 0.6)]),
+        (-0.2, [(1, 0.6)]),
+        (0.0, [(1, 0.8), (-1, 0.8)]),
+        (0.0, [(1, 0.5), (-1, 1.1), (1, 0.6)]),
+    ],
+)
+def test_ways_with_pieces_missing_are_found(curvature: float, pieces: list[tuple[float, float]]) -> None:
+    """One turn, one arc, one clothoid: words whose extrema merge. Nothing longer may be returned."""
+    from optplan.geometry._kernels.clothoid import clothoid_end
+
+    x, y, theta, kappa = 0.0, 0.0, 0.0, curvature
+    for sigma, length in pieces:
+        x, y, theta, kappa = clothoid_end(x, y, theta, kappa, sigma, length)
+    end = np.array([x, y, theta, kappa])
+    path = cc_path(np.array([0, 0, 0, curvature]), end, 1.0, 1.0)
+    check(path, end, 1.0, 1.0)
+    assert path.length <= sum(length for _, length in pieces) * (1 + 1e-9)
 
 
 def test_a_sharpness_without_limit_gives_dubins() -> None:
@@ -193,10 +220,10 @@ def test_known_lengths() -> None:
     assert ratios("cc00.csv", "cc00_len", "full").max() <= 1 + 1e-9
     curved = ratios("ccpm.csv", "cc_len", "full")
     assert curved.mean() <= 0.85
-    # a handful of listed words have four extrema; they are shorter by 0.2 % at most
+    # a handful of listed words have four extrema; they are shorter by 0.5 % at most
     for found in (curved, ratios("ccarb.csv", "cc_len", "full")):
-        assert np.mean(found <= 1 + 1e-9) >= 0.99
-        assert found.max() <= 1.003
+        assert np.mean(found <= 1 + 1e-9) >= 0.985
+        assert found.max() <= 1.006
 
 
 @known

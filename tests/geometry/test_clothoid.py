@@ -67,5 +67,4 @@ def test_batches_are_rows_of_single_ends() -> None:
     starts, sharpnesses, lengths = random.normal(size=(50, 4)), random.normal(size=50), random.normal(size=50) * 9
     ends = clothoid_ends(starts, sharpnesses, lengths)
     for start, sigma, length, end in zip(starts, sharpnesses, lengths, ends, strict=True):
-        x, y, theta, kappa = start
-        assert tuple(end) == clothoid_end(x, y, theta, kappa, sigma, length)
+        assert tuple(end) == clothoid_end(start[0], start[1], start[2], start[3], sigma, length)

@@ -25,7 +25,7 @@ SAME = 1e-12
 """States that differ by less, in least radii and rad, are the same."""
 
 
-@njit("Tuple((float64[:, ::1], float64[:, ::1], float64[::1]))(float64)", cache=True, nogil=True)
+@njit("Tuple((float64[:, ::1], float64[:, ::1], float64[::1]))(float64)", cache=True, nogil=True, error_model="numpy")
 def tables(s: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """What all queries of the same limits share."""
     table = spiral_table(s)
@@ -33,7 +33,10 @@ def tables(s: float) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 @njit(
-    "UniTuple(float64, 7)(float64, float64, float64, float64, float64, float64, float64[::1])", cache=True, nogil=True
+    "UniTuple(float64, 7)(float64, float64, float64, float64, float64, float64, float64[::1])",
+    cache=True,
+    nogil=True,
+    error_model="numpy",
 )
 def _reference(
     x: float, y: float, theta: float, a: float, b: float, s: float, turns: FloatArray
@@ -58,6 +61,7 @@ def _reference(
     "float64[:, ::1], float64[::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def solve(
     start: FloatArray,
@@ -102,6 +106,7 @@ def solve(
     "int64(float64[::1], float64[::1], int64, float64, float64[:, ::1], float64[::1], float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def pieces_of(
     word: FloatArray, query: FloatArray, row: int, s: float, table: FloatArray, turns: FloatArray, pieces: FloatArray
@@ -135,6 +140,7 @@ def pieces_of(
     "float64[::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def lengths(
     starts: FloatArray,
@@ -159,6 +165,7 @@ def lengths(
     "float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def matrix(
     exits: FloatArray,

@@ -15,15 +15,20 @@ from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
 WIDE = 24
+"""rows of valleys down to the limit, and as many of arcs there"""
+SLIGHT = 0.12
+"""guess of the valley of a slight counter-turn"""
+HARD = 0.5
+"""sharpness limit from which on words are so long that slight counter-turns pay"""
 
 
-@njit("float64[:, ::1](float64, float64[:, ::1])", cache=True, nogil=True)
+@njit("float64[:, ::1](float64, float64[:, ::1])", cache=True, nogil=True, error_model="numpy")
 def middle_table(s: float, table: FloatArray) -> FloatArray:
     """Rows w, reach, turned of the half of a CCC's middle, from the circle at the limit to its extremum (n, 3).
 
     w is the extended valley, from -1 (curvature stays at the limit) past 1 (arc against the turn). Seen from the
-    middle, where the heading is 0, `reach` is how far ahead the middle is of the first circle's centre, and
-    `turned` by how much the heading grows from the limit's end to the middle.
+    middle, where the heading is 0, `reach` is how far ahead the middle is of the first circle's centre, and `turned` by
+    how much the heading grows from the limit's end to the middle.
     """
     n = WIDE
     rows = np.empty((2 * n, 3))
@@ -52,7 +57,10 @@ def middle_table(s: float, table: FloatArray) -> FloatArray:
 
 
 @njit(
-    "void(float64[:, ::1], int64, int64, float64, float64, float64, float64, float64, float64)", cache=True, nogil=True
+    "void(float64[:, ::1], int64, int64, float64, float64, float64, float64, float64, float64)",
+    cache=True,
+    nogil=True,
+    error_model="numpy",
 )
 def _keep(
     best: FloatArray, row: int, kind: int, d1: float, d2: float, t1: float, m: float, t2: float, length: float
@@ -67,7 +75,7 @@ def _keep(
         best[row, 6] = t2
 
 
-@njit("float64(float64, float64)", cache=True, nogil=True)
+@njit("float64(float64, float64)", cache=True, nogil=True, error_model="numpy")
 def _extended(t: float, s: float) -> float:
     """Angle turned between curvatures 0 around an extended extremum."""
     return (t * t if t < 1.0 else 2.0 * t - 1.0) / s
@@ -78,6 +86,7 @@ def _extended(t: float, s: float) -> float:
     "UniTuple(float64, 6), float64[:, ::1], float64, float64[:, ::1], float64)",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def _try(
     row: int,
@@ -108,6 +117,7 @@ def _try(
     "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64)",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def _three_turns(
     row: int,
@@ -131,6 +141,13 @@ def _three_turns(
     a = side1[1]
     b = side2[1]
     distance = math.hypot(x, y)
+    # wiggles about the mean of the ends' curvatures, as long as the chord: the ways of short moves along a curve
+    wiggle = 0.25 * s * distance
+    if wiggle < 2.0:
+        k = max(0.5 * (a + b) - wiggle, -1.0)
+        t1 = max(a + 0.5 * wiggle, k)
+        t2 = max(b + 0.5 * wiggle, k)
+        _try(row, t1, -k, t2, x, y, theta, side1, side2, limits, table, distance, best, bound)
     t1 = max(0.15, a + 0.05)
     t2 = max(0.15, b + 0.05)
     turning = from_least(_extended(t1, s) + _extended(t2, s) - 0.5 * (a * a + b * b) / s - theta, 0.0)
@@ -172,6 +189,7 @@ def _three_turns(
     "void(float64, float64, float64, float64, float64, float64, float64[:, ::1], float64[:, ::1], float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def full_words(
     x: float,
@@ -210,10 +228,11 @@ def full_words(
     for i in range(count):
         row = int(found[i, 0])
         m = found[i, 2]
-        if row < 2 and m < 0.0:
-            # a line that would be driven backwards: a valley above 0 takes its place
+        if row < 2 and (m < 0.0 or s < HARD):
+            # a line that would be driven backwards: a valley above 0 takes its place; and a short one may do better
+            # as a slight turn the other way
             d = 1.0 - 2.0 * row
-            m = max(-0.95, 0.5 * s * m)
+            m = max(-0.95, 0.5 * s * m) if m < 0.0 else SLIGHT
             _try(
                 4 + row,
                 found[i, 3],

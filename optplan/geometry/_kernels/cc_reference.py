@@ -23,15 +23,19 @@ from optplan.geometry._kernels.spiral import spiral
 S, T, TT, TST, TTT = range(5)
 TWO_PI = 2.0 * math.pi
 SMALL = 4.5948
-"""rad; two symmetric clothoids from curvature 0 to 0 meet their chord up to this deflection (Scheuer, Fraichard)"""
+"""rad; beyond this deflection two symmetric clothoids end behind their start (A. Scheuer and T. Fraichard, 1997)"""
 SNAP = 1e-9
+"""rad; deflections this little below 0 are turns the other way, not full turns"""
 EXACT = 1e-12
+"""What is this near to touching, or to one circle, is so."""
 STRAIGHT = 1e-10
+"""An end this near to straight on is reached by a line."""
 CELLS = 256
 HEAD = 6
+"""numbers ahead of the cells"""
 
 
-@njit("float64(float64, float64, float64[:, ::1])", cache=True, nogil=True)
+@njit("float64(float64, float64, float64[:, ::1])", cache=True, nogil=True, error_model="numpy")
 def _chord_share(delta: float, s: float, table: FloatArray) -> float:
     """Chord over length of two symmetric clothoids that turn by `delta` > 0, of any sharpness."""
     k = math.sqrt(s * delta)
@@ -39,7 +43,7 @@ def _chord_share(delta: float, s: float, table: FloatArray) -> float:
     return s * (math.cos(0.5 * delta) * ex + math.sin(0.5 * delta) * ey) / k
 
 
-@njit("float64(float64, float64, float64, float64, float64[:, ::1])", cache=True, nogil=True)
+@njit("float64(float64, float64, float64, float64, float64[:, ::1])", cache=True, nogil=True, error_model="numpy")
 def _small_length(delta: float, s: float, radius: float, mu: float, table: FloatArray) -> float:
     """Length of two clothoids that keep to the ends of the regular turn; inf where there are none."""
     if delta < 1e-18:
@@ -53,7 +57,7 @@ def _small_length(delta: float, s: float, radius: float, mu: float, table: Float
     return length
 
 
-@njit("float64[::1](float64, float64[:, ::1])", cache=True, nogil=True)
+@njit("float64[::1](float64, float64[:, ::1])", cache=True, nogil=True, error_model="numpy")
 def turn_table(s: float, table: FloatArray) -> FloatArray:
     """What the reference family asks of its limits: x, y of the circle's centre, its radius, mu, the deflection of two
     whole clothoids, the deflection up to which lengths are in the table; then 6 coefficients a cell of
@@ -95,16 +99,16 @@ def turn_table(s: float, table: FloatArray) -> FloatArray:
     return out
 
 
-@njit("float64(float64)", cache=True, nogil=True, inline="always")
+@njit("float64(float64)", cache=True, nogil=True, error_model="numpy", inline="always")
 def _wrapped(angle: float) -> float:
     """In [-SNAP, 2 pi - SNAP): just below no turn is a small turn the other way, not a full one."""
     return angle - TWO_PI * math.floor((angle + SNAP) / TWO_PI)
 
 
-@njit("float64(float64, float64[::1])", cache=True, nogil=True)
+@njit("float64(float64, float64[::1])", cache=True, nogil=True, error_model="numpy")
 def turn_length(delta: float, turns: FloatArray) -> float:
     """Length of the shorter of the small and the regular turn by `delta` in [-SNAP, 2 pi - SNAP)."""
-    regular = delta - turns[4]
+    regular: float = delta - turns[4]
     if regular < 0.0:
         regular += TWO_PI * math.ceil(-regular / TWO_PI)
     regular += 2.0 * turns[4]
@@ -118,14 +122,15 @@ def turn_length(delta: float, turns: FloatArray) -> float:
         )
         small = 2.0 * turns[2] * math.sin(0.5 * delta + turns[3]) / small
         if small < regular:
-            return float(small)
-    return float(regular)
+            regular = small
+    return regular
 
 
 @njit(
     "UniTuple(float64, 7)(float64, float64, float64, float64[::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def reference_word(
     x: float, y: float, theta: float, turns: FloatArray
@@ -197,7 +202,12 @@ def reference_word(
     return best, word, side1, side2, first, middle, last
 
 
-@njit("int64(float64, float64, float64, float64[::1], float64[:, ::1], float64[:, ::1], int64)", cache=True, nogil=True)
+@njit(
+    "int64(float64, float64, float64, float64[::1], float64[:, ::1], float64[:, ::1], int64)",
+    cache=True,
+    nogil=True,
+    error_model="numpy",
+)
 def turn_pieces(
     d: float, delta: float, s: float, turns: FloatArray, table: FloatArray, pieces: FloatArray, n: int
 ) -> int:

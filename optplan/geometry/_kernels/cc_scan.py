@@ -28,6 +28,7 @@ LINES = 48
     "float64, float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def lines(
     x: float,

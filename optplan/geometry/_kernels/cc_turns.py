@@ -22,20 +22,20 @@ from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
 Side = tuple[float, float, float, float, float, float, float, float, float]
-"""d (1: left), a seen as a left turn, least deflection, exp(-i a^2 / 2s) E(a) negated (x, y), cos and sin of that
+"""d (1: left), a seen as a left turn, least deflection, -exp(-i a^2 / 2s) E(a) (x, y), cos and sin of that
 angle, centre of the circle at the limit (x, y)"""
 Limits = tuple[float, float, float, float, float, float]
 """s, E(1), 1 / 2s, and g and h of a held turn's inner end seen from its circle's centre"""
 
 
-@njit("float64(float64, float64)", cache=True, nogil=True, inline="always")
+@njit("float64(float64, float64)", cache=True, nogil=True, error_model="numpy", inline="always")
 def from_least(angle: float, least: float) -> float:
     """The angle, by whole turns, in [least, least + 2 pi)."""
     rest = (angle - least) / TWO_PI
     return least + TWO_PI * (rest - math.floor(rest))
 
 
-@njit("UniTuple(float64, 6)(float64, float64[:, ::1])", cache=True, nogil=True)
+@njit("UniTuple(float64, 6)(float64, float64[:, ::1])", cache=True, nogil=True, error_model="numpy")
 def limits_of(s: float, table: FloatArray) -> Limits:
     """What all turns at the same limits share."""
     ex, ey = spiral(table, 1.0)
@@ -43,10 +43,15 @@ def limits_of(s: float, table: FloatArray) -> Limits:
     return s, ex, ey, half, ex - math.sin(half), -ey - math.cos(half)
 
 
-@njit("UniTuple(float64, 9)(float64, float64, UniTuple(float64, 6), float64[:, ::1])", cache=True, nogil=True)
+@njit(
+    "UniTuple(float64, 9)(float64, float64, UniTuple(float64, 6), float64[:, ::1])",
+    cache=True,
+    nogil=True,
+    error_model="numpy",
+)
 def side_of(d: float, curvature: float, limits: Limits, table: FloatArray) -> Side:
     """What all turns to side d from the same end share."""
-    _s, ex, ey, half, _, _ = limits
+    _, ex, ey, half, _, _ = limits
     a = d * curvature
     angle = half * a * a
     c = math.cos(angle)
@@ -63,6 +68,7 @@ def side_of(d: float, curvature: float, limits: Limits, table: FloatArray) -> Si
     "UniTuple(float64, 4)(float64, float64, float64, UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def turn(
     delta: float, c: float, sn: float, side: Side, limits: Limits, table: FloatArray
@@ -89,6 +95,7 @@ def turn(
     "UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def _gap(
     psi: float,
@@ -120,6 +127,7 @@ def _gap(
     "UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def line_root(
     low: float,
@@ -140,12 +148,11 @@ def line_root(
 ) -> tuple[float, float, float]:
     """Line's length and both peaks where f vanishes between headings at which it has two signs.
 
-    NaN once it is clear that the line is shorter than `least`, or the path, from the least turns on, longer than
-    `most`.
+    NaN once it is clear that the line is shorter than `least`, or line and turns longer than `most`.
     """
     psi = low + (high - low) * f_low / (f_low - f_high)
     m = t1 = t2 = 0.0
-    close = 1e-11 * (1.0 + abs(x) + abs(y))
+    close = 3e-12 * (1.0 + abs(x) + abs(y))
     for _ in range(30):
         f, slope, m, t1, t2 = _gap(psi, shift1, shift2, x, y, theta, side1, side2, limits, table)
         if abs(f) < close:
@@ -168,6 +175,7 @@ def line_root(
     "UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def crossing(
     low: float,

@@ -19,7 +19,9 @@ from optplan.geometry._kernels.spiral import spiral
 
 CSC, CCC = 0, 1
 TWO_PI = 2.0 * math.pi
-STEPS = 12
+STEPS = 40
+PATIENCE = 10
+"""steps after which the error must halve each time, as it does where two extrema are about to merge"""
 CLOSE = 1e-12
 """An end this close, in units of the path's length, is reached."""
 
@@ -28,6 +30,7 @@ CLOSE = 1e-12
     "int64(int64, float64, float64, float64, float64, float64, float64, float64, float64, float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def word_pieces(
     kind: int, d1: float, d2: float, t1: float, m: float, t2: float, a: float, b: float, s: float, pieces: FloatArray
@@ -64,6 +67,7 @@ def word_pieces(
     "UniTuple(float64, 8)(float64, float64, UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def _half(
     t: float, m: float, side: Side, limits: Limits, table: FloatArray
@@ -116,6 +120,7 @@ def _half(
     "UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1], float64)",
     cache=True,
     nogil=True,
+    error_model="numpy",
 )
 def three_extrema(
     t1: float,
@@ -142,6 +147,7 @@ def three_extrema(
     s_end = math.sin(theta)
     # a step of much more than about a radian, or than half the way to the limit, is not to be trusted
     cap = 1.0 + 1.2 / s
+    before = math.inf
     for step in range(STEPS):
         length = (2.0 * (t1 + m + t2) - a - b) / s
         x1, y1, h1, c1, s1, q11, q21, p1 = _half(t1, m, side1, limits, table)
@@ -158,6 +164,9 @@ def three_extrema(
             if min(p1 - max(a, k), p2 - max(b, k)) < -1e-11 or length <= 0.0 or length > longest:
                 break
             return length, t1, m, t2
+        if step >= PATIENCE and error > 0.5 * before:
+            break
+        before = error
         if step > 2 and (error > 0.5 * size or length - 2.0 * (abs(ex) + abs(ey)) > longest):
             break
         q13 = c_end * vx + s_end * vy
@@ -168,7 +177,7 @@ def three_extrema(
         m2 = q23 * p1 - q21 * p2
         m3 = q21 * k - q22 * p1
         det = q11 * m1 + q12 * m2 + q13 * m3
-        if abs(det) < 1e-14:
+        if abs(det) < 1e-40:
             break
         g1 = (ex * m1 + q12 * (q23 * et - ey * p2) + q13 * (ey * k - q22 * et)) / det
         g2 = (q11 * (ey * p2 - q23 * et) + ex * m2 + q13 * (q21 * et - ey * p1)) / det

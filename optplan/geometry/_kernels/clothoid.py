@@ -71,7 +71,7 @@ _G_BOTTOM = (
 )
 
 
-@njit("UniTuple(float64, 2)(float64)", cache=True, nogil=True)
+@njit("UniTuple(float64, 2)(float64)", cache=True, nogil=True, error_model="numpy")
 def _ratios(y: float) -> tuple[float, float]:
     """pi t f(t) and pi^2 t^3 g(t) for y = 1 / (pi t^2)."""
     f_top = f_bottom = g_top = g_bottom = 0.0
@@ -84,7 +84,7 @@ def _ratios(y: float) -> tuple[float, float]:
     return f_top / f_bottom, g_top / g_bottom
 
 
-@njit("UniTuple(float64, 2)(float64, float64, float64, float64)", cache=True, nogil=True)
+@njit("UniTuple(float64, 2)(float64, float64, float64, float64)", cache=True, nogil=True, error_model="numpy")
 def _gauss(theta: float, kappa: float, sigma: float, length: float) -> tuple[float, float]:
     """Displacement of a piece whose heading changes by a few rad: the middle's frame, symmetric pairs of nodes."""
     h = 0.5 * length
@@ -109,7 +109,7 @@ def _gauss(theta: float, kappa: float, sigma: float, length: float) -> tuple[flo
     return length * (c * along - s * across), length * (s * along + c * across)
 
 
-@njit("UniTuple(float64, 2)(float64, float64, float64)", cache=True, nogil=True)
+@njit("UniTuple(float64, 2)(float64, float64, float64)", cache=True, nogil=True, error_model="numpy")
 def _rest(theta: float, kappa: float, sigma: float) -> tuple[float, float]:
     """From a point far from the inflection to the infinite end of the spiral (kappa and sigma of one sign)."""
     f, g = _ratios(abs(sigma) / (kappa * kappa))
@@ -121,7 +121,7 @@ def _rest(theta: float, kappa: float, sigma: float) -> tuple[float, float]:
     return g * c - f * s, f * c + g * s
 
 
-@njit("UniTuple(float64, 2)(float64, float64, float64, float64)", cache=True, nogil=True)
+@njit("UniTuple(float64, 2)(float64, float64, float64, float64)", cache=True, nogil=True, error_model="numpy")
 def clothoid_displacement(theta: float, kappa: float, sigma: float, length: float) -> tuple[float, float]:
     """Displacement (m, m) over `length` metres from a heading (rad), a curvature (1/m) and a sharpness (1/m^2)."""
     swing = max(abs(kappa), abs(kappa + sigma * length)) * abs(length)
@@ -160,7 +160,12 @@ def clothoid_displacement(theta: float, kappa: float, sigma: float, length: floa
     return x, y
 
 
-@njit("UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64)", cache=True, nogil=True)
+@njit(
+    "UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64)",
+    cache=True,
+    nogil=True,
+    error_model="numpy",
+)
 def clothoid_end(
     x: float, y: float, theta: float, kappa: float, sigma: float, length: float
 ) -> tuple[float, float, float, float]:
@@ -172,7 +177,7 @@ def clothoid_end(
     return x + dx, y + dy, theta + length * (kappa + 0.5 * sigma * length), kappa + sigma * length
 
 
-@njit("float64[:, ::1](float64[:, ::1], float64[::1], float64[::1])", cache=True, nogil=True)
+@njit("float64[:, ::1](float64[:, ::1], float64[::1], float64[::1])", cache=True, nogil=True, error_model="numpy")
 def clothoid_ends(starts: FloatArray, sharpnesses: FloatArray, lengths: FloatArray) -> FloatArray:
     """`clothoid_end` of rows x, y, theta, kappa (k, 4), sharpnesses (k,) and lengths (k,): rows (k, 4)."""
     ends = np.empty((len(starts), 4))

@@ -19,7 +19,7 @@ LARGEST = 20_000
 """cells of a table; blunter limits than about s = 0.001 get coarser ones, and paths are polished anyway"""
 
 
-@njit("float64[:, ::1](float64)", cache=True, nogil=True)
+@njit("float64[:, ::1](float64)", cache=True, nogil=True, error_model="numpy")
 def spiral_table(s: float) -> FloatArray:
     """Rows of coefficients (n, 12) of E on [0, 1]: quintics that agree to second derivatives at the cells' ends.
 
@@ -57,7 +57,7 @@ def spiral_table(s: float) -> FloatArray:
     return table
 
 
-@njit("UniTuple(float64, 2)(float64[:, ::1], float64)", cache=True, nogil=True, inline="always")
+@njit("UniTuple(float64, 2)(float64[:, ::1], float64)", cache=True, nogil=True, error_model="numpy", inline="always")
 def spiral(table: FloatArray, k: float) -> tuple[float, float]:
     """E(k) for -1 <= k <= 1."""
     n = len(table)
