@@ -1,0 +1,126 @@
+"""Figures of connectors: processor time a query, and lengths against lists of known ones.
+
+The lists are looked for in `../shared/data/connectors` beside the project; without them those rows are left out.
+"""
+
+from __future__ import annotations
+
+import csv
+import statistics
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from benchmarks.ordering import DATA, Row
+from optplan.domain.arrays import FloatArray
+from optplan.geometry.cc import Family, cc_lengths, cc_matrix
+from optplan.geometry.dubins import dubins_lengths
+
+LISTS = DATA / "connectors"
+KAPPA = 1.125
+SHARPNESSES = (3.0, 2.1, 1.0, 0.25)
+"""1/m^2: kappa_max^2 / sigma_max is 0.42, 0.60, 1.27 and 5.06"""
+
+
+def queries(count: int, seed: int) -> FloatArray:
+    """Random rows x, y, heading, curvature 0 in a box of 10 m."""
+    random = np.random.default_rng(seed)
+    return np.column_stack([random.uniform(0, 10, (count, 2)), random.uniform(-np.pi, np.pi, count), np.zeros(count)])
+
+
+def used(work: Callable[[], object], times: int = 5) -> float:
+    """Processor seconds, the median of several runs."""
+    seconds = []
+    for _ in range(times):
+        start = time.process_time()
+        work()
+        seconds.append(time.process_time() - start)
+    return statistics.median(seconds)
+
+
+def speeds(count: int = 100_000) -> Iterator[Row]:
+    """Microseconds a query in a batch."""
+    starts, ends = queries(count, 0), queries(count, 1)
+    scale = 1e6 / count
+    dubins_lengths(starts[:9, :3], ends[:9, :3], 1 / KAPPA)
+    for sharpness in SHARPNESSES:
+        cc_lengths(starts[:9], ends[:9], KAPPA, sharpness)
+        dubins = scale * used(lambda: dubins_lengths(starts[:, :3], ends[:, :3], 1 / KAPPA))
+        reference = scale * used(lambda: cc_lengths(starts, ends, KAPPA, sharpness, "reference"))  # noqa: B023
+        full = scale * used(lambda: cc_lengths(starts, ends, KAPPA, sharpness), 3)  # noqa: B023
+        q = KAPPA**2 / sharpness
+        yield Row(f"Dubins length, beside q = {q:.2f}", dubins, 0.25, "us")
+        yield Row(f"reference family, q = {q:.2f}", reference / dubins, 2.5, "x", "of the Dubins time")
+        yield Row(f"full family, q = {q:.2f}", full, 10.0, "us", f"{full / dubins:.0f} x the Dubins time")
+
+
+def matrices(size: int = 2000, sharpness: float = 2.1) -> Iterator[Row]:
+    """Wall seconds of a matrix by threads."""
+    exits, entries = queries(size, 2), queries(size, 3)
+    families: tuple[tuple[Family, float], ...] = (("reference", 4.0), ("full", 25.0))
+    for family, target in families:
+        start = time.perf_counter()
+        cc_matrix(exits, entries, KAPPA, sharpness, family)
+        yield Row(f"matrix {size} x {size}, {family} family", time.perf_counter() - start, target, "s", "wall")
+
+
+def listed(name: str, column: str, family: Family) -> tuple[list[dict[str, str]], FloatArray]:
+    """Rows of a list, and length over the listed one of each."""
+    groups: dict[tuple[float, float], list[dict[str, str]]] = defaultdict(list)
+    with (LISTS / name).open() as stream:
+        for row in csv.DictReader(stream):
+            groups[float(row["kappa_max"]), float(row["sigma_max"])].append(row)
+    ratios = []
+    for limits, group in groups.items():
+        starts, ends = (
+            np.array([[float(row.get(f"{what}{i}", 0)) for what in ("x", "y", "th", "k")] for row in group])
+            for i in (0, 1)
+        )
+        ratios.append(cc_lengths(starts, ends, *limits, family) / [float(row[column]) for row in group])
+    return [row for group in groups.values() for row in group], np.concatenate(ratios)
+
+
+def lengths() -> Iterator[Row]:
+    """Lengths against the lists."""
+    if not LISTS.is_dir():
+        return
+    _, off = listed("cc00.csv", "cc00_len", "reference")
+    yield Row("reference family off cc00.csv, relative", float(np.abs(off - 1).max()), 1e-9, "")
+    rows, full = listed("cc00.csv", "cc00_len", "full")
+    yield Row("longer than cc00.csv, queries", float((full > 1 + 1e-9).sum()), 0, "")
+    with (LISTS / "best.csv").open() as stream:
+        best = {row["id"]: float(row["best_known_len"]) for row in csv.DictReader(stream)}
+    for what, least, most, target in (("q <= 2", 0.0, 2.001, 3.0), ("q >= 5", 4.999, np.inf, 10.0)):
+        worse = [
+            ratio * float(row["cc00_len"]) > 1.002 * best[row["id"]]
+            for row, ratio in zip(rows, full, strict=True)
+            if row["id"] in best and least <= float(row["kappa_max"]) ** 2 / float(row["sigma_max"]) <= most
+        ]
+        yield Row(f"0.2 % above the best known, {what}", 100 * float(np.mean(worse)), target, "%")
+    for name, mean in (("ccpm.csv", 0.85), ("ccarb.csv", 1.0)):
+        _, ratio = listed(name, "cc_len", "full")
+        yield Row(f"mean length over {name}", float(ratio.mean()), mean, "")
+        worst = f"worst {ratio.max():.5f}"
+        yield Row(f"longer than {name}, queries", float((ratio > 1 + 1e-9).sum()), 0, "", worst)
+
+
+def main() -> int:
+    """Print the table; 0 when every target is met."""
+    met = True
+    for part in (lengths(), speeds(), matrices()):
+        for row in part:
+            good = row.measured <= row.target
+            met = met and good
+            verdict = "met" if good else "NOT MET"
+            print(
+                f"{row.what:<44}{row.measured:>11.4g} {row.unit:<3}{row.target:>9.3g}  {verdict}  {row.remark}",
+                flush=True,
+            )
+    return 0 if met else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
