@@ -32,6 +32,7 @@ tests: .venv/.ready
 bench: .venv/.ready
 	-$(MAKE) --no-print-directory .peers/.ready
 	-$(RUN)python -m benchmarks
+	-$(RUN)python -m benchmarks.connectors
 	$(RUN)python -m benchmarks.ordering
 
 format: .venv/.ready
