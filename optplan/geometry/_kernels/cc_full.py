@@ -14,6 +14,8 @@ from optplan.geometry._kernels.cc_words import CCC, CSC, three_extrema
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
+LONG = 0.15
+"""sharpness limit from which on a turn by more than two circles is tried"""
 WIDE = 24
 """rows of valleys down to the limit, and as many of arcs there"""
 SLIGHT = 0.12
@@ -143,7 +145,10 @@ def _three_turns(
     distance = math.hypot(x, y)
     # wiggles about the mean of the ends' curvatures, as long as the chord: the ways of short moves along a curve
     wiggle = 0.25 * s * distance
-    if wiggle < 2.0:
+    loose = 0.01 + 0.3 * s * distance * distance
+    off = theta - 0.5 * (a + b) * distance
+    off -= TWO_PI * math.floor(off / TWO_PI + 0.5)
+    if wiggle < 2.0 and abs(off) < loose:
         k = max(0.5 * (a + b) - wiggle, -1.0)
         t1 = max(a + 0.5 * wiggle, k)
         t2 = max(b + 0.5 * wiggle, k)
@@ -151,7 +156,7 @@ def _three_turns(
     t1 = max(0.15, a + 0.05)
     t2 = max(0.15, b + 0.05)
     turning = from_least(_extended(t1, s) + _extended(t2, s) - 0.5 * (a * a + b * b) / s - theta, 0.0)
-    for j in range(3):
+    for j in range(3 if s < LONG else 2):
         most = turning + j * TWO_PI
         m = math.sqrt(s * most) if s * most < 1.0 else 0.5 * (s * most + 1.0)
         _try(row, t1, m, t2, x, y, theta, side1, side2, limits, table, distance, best, bound)

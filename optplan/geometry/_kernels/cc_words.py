@@ -4,8 +4,8 @@ A word is CSC, a turn, a line and a turn back to the end's curvature, or CCC, th
 up, down, up (or the mirror image). The valley of a CCC may stay above 0 (a dip), or reach -1 and hold there. A turn is
 given by its extended extremum t: the curvature climbs to min(t, 1), and for t > 1 an arc of 2 (t - 1) / s is driven.
 
-To lengthen a path by dl where its curvature is k, at place J with heading u, moves its end E by
-(u + k perp(E - J)) dl and turns it by k dl: the columns of Newton's matrix, for peaks and lines alike.
+To lengthen a path by dl where its curvature is k, at place J with heading u, moves any later place E by
+(u + k perp(E - J)) dl and turns it by k dl: the columns of Newton's matrix.
 """
 
 from __future__ import annotations
@@ -167,7 +167,11 @@ def three_extrema(
         if step >= PATIENCE and error > 0.5 * before:
             break
         before = error
-        if step > 2 and (error > 0.5 * size or length - 2.0 * (abs(ex) + abs(ey)) > longest):
+        # most guesses that lead nowhere still miss by much of their length after a few steps
+        hopeless = (0.9 if step < 3 else (0.5 if step < 5 else 0.15)) * size
+        if step > 0 and error > hopeless:
+            break
+        if step > 2 and length - 2.0 * (abs(ex) + abs(ey)) > longest:
             break
         q13 = c_end * vx + s_end * vy
         q23 = s_end * vx - c_end * vy
