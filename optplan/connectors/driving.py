@@ -17,8 +17,8 @@ from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
 from optplan.domain.stroke import Stroke, Traversals
 from optplan.geometry.cc import cc_path
+from optplan.geometry.clothoids import clothoid_displacement
 from optplan.geometry.dubins import dubins_path
-from optplan.geometry.paths import displacement
 from optplan.geometry.rounding import Pieces, rounded, wrapped
 
 COINCIDENT = 1e-9
@@ -138,7 +138,7 @@ def _dubins(here: FloatArray, there: FloatArray, radius: float) -> Pieces:
     x, y, heading = here[:3]
     for curvature, length in zip(path.curvatures, path.lengths, strict=True):
         made.append((x, y, heading, curvature, length, 0.0))
-        dx, dy = displacement(*(np.array([value]) for value in (heading, curvature, 0.0, length)))
+        dx, dy = clothoid_displacement(*(np.array([value]) for value in (heading, curvature, 0.0, length)))
         x, y, heading = x + dx[0], y + dy[0], heading + curvature * length
     return _pieces(made)
 
@@ -148,7 +148,7 @@ def _cc(here: FloatArray, there: FloatArray, family: Family) -> Pieces:
     count = len(path.lengths)
     turned = path.lengths * (path.curvatures + path.sharpnesses * path.lengths / 2)
     heading = here[2] + np.concatenate([[0.0], np.cumsum(turned)])[:count]
-    dx, dy = displacement(heading, path.curvatures, path.sharpnesses, path.lengths)
+    dx, dy = clothoid_displacement(heading, path.curvatures, path.sharpnesses, path.lengths)
     start = here[:2] + np.column_stack([np.cumsum(dx) - dx, np.cumsum(dy) - dy])
     return Pieces(start, heading, path.curvatures, path.lengths, np.zeros(count), path.sharpnesses)
 
@@ -173,7 +173,7 @@ def _without_turns(pieces: Pieces) -> Pieces:
 
 def _end(pieces: Pieces) -> FloatArray:
     start, heading, curvature, length, turn, sharpness = (column[-1:] for column in pieces)
-    dx, dy = displacement(heading, curvature, sharpness, length)
+    dx, dy = clothoid_displacement(heading, curvature, sharpness, length)
     turned = length[0] * (curvature[0] + sharpness[0] * length[0] / 2) + turn[0]
     bend = curvature[0] + sharpness[0] * length[0]
     return np.array([start[0, 0] + dx[0], start[0, 1] + dy[0], heading[0] + turned, bend])

@@ -16,7 +16,7 @@ from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.path import RAISED
 from optplan.domain.robot import Robot
 from optplan.domain.stroke import Stroke
-from optplan.geometry.paths import displacement
+from optplan.geometry.clothoids import clothoid_displacement
 
 BIT = 0.2
 """rad that a connector turns between two points of the line that stands for it."""
@@ -94,7 +94,9 @@ def connector_lines(exits: FloatArray, entries: FloatArray, family: Family) -> A
             heading, curvature, sharpness = (
                 np.full(len(along), column[k]) for column in (pieces.heading, pieces.curvature, pieces.sharpness)
             )
-            points.append(pieces.start[k] + np.column_stack(displacement(heading, curvature, sharpness, along)))
+            points.append(
+                pieces.start[k] + np.column_stack(clothoid_displacement(heading, curvature, sharpness, along))
+            )
         line = np.concatenate([*points, there[None, :2]])
         made.append(shapely.LineString(line))
     return np.array(made, dtype=object)

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.path import Path
-from optplan.geometry.paths import along, displacement, ends, sampled
+from optplan.geometry.clothoids import clothoid_displacement
+from optplan.geometry.paths import along, ends, sampled
 from tests.strategies import array
 
 
@@ -47,7 +48,7 @@ MIXED = _path([(0, 0, 1, 0), (0.5, 0, 2, 0), (0, 0, 0, 1.0), (-1, 0.7, 3, 0), (2
 @given(st.floats(-4, 4), st.floats(-5, 5), st.floats(-5, 5), st.floats(0, 4))
 def test_displacement(heading: float, curvature: float, sharpness: float, length: float) -> None:
     columns = (array([value]) for value in (heading, curvature, sharpness, length))
-    dx, dy = displacement(*columns)
+    dx, dy = clothoid_displacement(*columns)
     assert complex(dx[0], dy[0]) == pytest.approx(_integrated(heading, curvature, sharpness, length), abs=1e-9)
 
 

@@ -165,3 +165,11 @@ def test_a_wall_to_be_washed_is_proved() -> None:
     answer = METHOD.solve(problem, StopRule(), seed=0)
     assert answer.status is Status.OPTIMAL
     assert answer.cost == pytest.approx(wall["optimum"], abs=1e-3)
+
+
+def test_nothing_is_proved_when_there_is_no_time() -> None:
+    """The bound is then minus infinity, and some arcs do not exist: neither may be mistaken for the other."""
+    problem = random_problem("holes", 6, 1, precedence=True, start=False, end=False)
+    found = root(problem, 50.0, StopRule(cancelled=lambda: True), np.zeros(0, dtype=np.int64))
+    assert found.bound == -math.inf
+    assert not np.isnan(found.arcs).any()

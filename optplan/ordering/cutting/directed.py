@@ -87,7 +87,8 @@ def root(
     loop.start()
     loop.run()
     reduced = loop.reduced.copy()
-    reduced[loop.base + reduced >= loop.cutoff] = math.inf
+    if math.isfinite(loop.base):  # else the time was over before anything was proved
+        reduced[loop.base + reduced >= loop.cutoff] = math.inf
     inner = slice(None) if problem.closed else slice(-1)
     none = np.zeros(problem.nodes)
     return Root(
