@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from optplan.connectors.families import family_of, metric_of, start_states
-from optplan.coverage.corners import least_radius
-from optplan.coverage.drawing import tolerance_of
+from optplan.connectors.ways import ends_of
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.errors import InputError, LimitError
 from optplan.domain.options import Options
@@ -17,7 +15,6 @@ from optplan.domain.ordering import ArcCosts, DubinsCosts, EuclidCosts, MatrixCo
 from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
 from optplan.domain.stroke import Stroke, Traversals
-from optplan.geometry.rounding import inner_vertices
 
 DUBINS_ENTRIES = 16
 """Vertices at which a closed stroke may be entered when headings count, unless the options say otherwise."""
@@ -48,14 +45,10 @@ def traversals(
     for a, i, b, j in links:
         kept.setdefault(a, []).append(i)
         kept.setdefault(b, []).append(j)
-    tolerance, radius = tolerance_of(options.page, robot.tool), least_radius(robot, options)
     speed = options.time.work_speed or robot.mobility.work_speed
     both = metric_of(robot, options) != "euclid"
     most = options.order.entries or (DUBINS_ENTRIES if both else None)
-    parts = [
-        _ways(stroke, tolerance, radius, options.connect.corner, both, most, kept.get(k, []))
-        for k, stroke in enumerate(strokes)
-    ]
+    parts = [_ways(stroke, robot, options, both, most, kept.get(k, [])) for k, stroke in enumerate(strokes)]
     index = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
     shapes = ((0,), (0,), (0, 5), (0, 5), (0,), (0,))
     vertex, reverse, entry, exit, length, turned = (
@@ -67,61 +60,32 @@ def traversals(
 
 
 def _ways(
-    stroke: Stroke, tolerance: float, radius: float, corner: float, both: bool, most: int | None, kept: list[int]
+    stroke: Stroke, robot: Robot, options: Options, both: bool, most: int | None, kept: list[int]
 ) -> tuple[FloatArray, ...]:
     """entry vertex, reverse, entry state, exit state, length and angle turned of every way of one stroke."""
-    points = stroke.points
+    count = len(stroke.points)
+    offers: list[tuple[IntArray, bool]]
     if stroke.is_stop:
-        state = np.zeros((1, 5))
-        state[0, : points.shape[1]] = points[0]
-        return np.zeros(1), np.zeros(1), state, state, np.zeros(1), np.zeros(1)
-    plane = points[:, :2]
-    vertices = inner_vertices(plane, stroke.closed, tolerance, radius, corner)
-    # rounding a vertex saves two tangents and costs an arc
-    half = np.where(vertices.tangent > 0, np.abs(vertices.deflection) / 2, 1.0)
-    saved = np.where(vertices.tangent > 0, 2 * vertices.tangent * (1 - half / np.tan(half)), 0.0)
-    turns = np.where(vertices.corner, np.abs(vertices.deflection), 0.0)
-    ring = stroke.closed_points
-    total = stroke.length - saved.sum()
-    steps = np.diff(ring, axis=0)
-    headings = np.arctan2(steps[:, 1], steps[:, 0])
-    count = len(points)
-    if stroke.closed:
+        offers = [(np.array([0]), False)]
+    elif stroke.closed:
         choice = np.arange(count) if stroke.entry is None else np.array([stroke.entry])
         if most is not None and len(choice) > most:
             choice = np.union1d(choice[np.linspace(0, count, most, endpoint=False).astype(np.int64)], kept)
-            choice = choice.astype(np.int64)
-        into, out_of = headings[choice - 1], headings[choice]
-        rows: list[tuple[IntArray, int, IntArray, IntArray, FloatArray, FloatArray]]
-        rows = [(choice, 0, choice, choice, out_of, into)]
+        offers = [(choice.astype(np.int64), False)]
         if both and not stroke.directed:
-            rows.append((choice, 1, choice, choice, into + math.pi, out_of + math.pi))
-        lengths = total + saved[choice]  # where it begins and ends, a ring is not rounded
-        angles = turns.sum() - turns[choice]
+            offers.append((choice.astype(np.int64), True))
     else:
-        first, last = np.array([0]), np.array([count - 1])
-        rows = [(first, 0, first, last, headings[:1], headings[-1:])]
-        rows.append((last, 1, last, first, headings[-1:] + math.pi, headings[:1] + math.pi))
+        offers = [(np.array([0]), False), (np.array([count - 1]), True)]
         if stroke.directed or stroke.entry == 0:
-            rows = rows[:1]
+            offers = offers[:1]
         elif stroke.entry is not None:
-            rows = rows[1:]
-        lengths, angles = np.array([total]), np.array([turns.sum()])
+            offers = offers[1:]
+    rows = [ends_of(stroke, vertex, reverse, robot, options) for vertex, reverse in offers]
     return (
-        np.concatenate([row[0] for row in rows]),
-        np.concatenate([np.full(len(row[0]), row[1]) for row in rows]),
-        np.concatenate([_states(points, row[2], row[4]) for row in rows]),
-        np.concatenate([_states(points, row[3], row[5]) for row in rows]),
-        np.tile(lengths, len(rows)),
-        np.tile(angles, len(rows)),
+        np.concatenate([vertex for vertex, _ in offers]),
+        np.concatenate([np.full(len(vertex), reverse) for vertex, reverse in offers]),
+        *(np.concatenate(column) for column in zip(*rows, strict=True)),
     )
-
-
-def _states(points: FloatArray, vertex: IntArray, heading: FloatArray) -> FloatArray:
-    states = np.zeros((len(vertex), 5))
-    states[:, : points.shape[1]] = points[vertex]
-    states[:, 3] = heading
-    return states
 
 
 def visits_of_tour(tour: Sequence[int], strokes: Sequence[Stroke]) -> list[tuple[int, int, bool]]:

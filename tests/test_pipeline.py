@@ -128,7 +128,7 @@ def test_an_area_has_no_bare_stripes_along_sides_that_run_with_its_lines() -> No
 
 def test_curves_that_stop_the_robot_are_told() -> None:
     cover = op.cover(op.read(op.instance("fish")), op.load_robot("beach-rake"))
-    tight = {note.place for note in cover.notes if "tighter" in note.text}
+    tight = {note.place for note in cover.notes if "bends more" in note.text}
     assert "ellipse2" in tight  # a bubble of 0.44 m
 
 

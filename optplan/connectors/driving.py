@@ -8,33 +8,20 @@ from typing import NamedTuple
 import numpy as np
 
 from optplan.connectors.families import Family, family_of, start_states
-from optplan.coverage.corners import least_radius
-from optplan.coverage.drawing import tolerance_of
+from optplan.connectors.ways import driven
 from optplan.domain.arrays import FloatArray
 from optplan.domain.options import Options
 from optplan.domain.path import RAISED, Path
 from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
-from optplan.domain.stroke import Stroke, Traversals
+from optplan.domain.stroke import Traversals
 from optplan.geometry.cc import cc_path
 from optplan.geometry.clothoids import clothoid_displacement
 from optplan.geometry.dubins import dubins_path
-from optplan.geometry.rounding import Pieces, rounded, wrapped
+from optplan.geometry.rounding import Pieces, wrapped
 
 COINCIDENT = 1e-9
 """Two places nearer than this are one, m: no connector is driven between them."""
-
-
-def driven(stroke: Stroke, entry_vertex: int, reverse: bool, robot: Robot, options: Options) -> Pieces:
-    """The path of one traversal: lines, arcs and turns along a stroke of two points or more."""
-    points = stroke.points[:, :2]
-    if stroke.closed:
-        points = np.roll(points, -entry_vertex, axis=0)
-        points = np.concatenate([points, points[:1]])
-    if reverse:
-        points = points[::-1]
-    tolerance = tolerance_of(options.page, robot.tool)
-    return rounded(points, tolerance, least_radius(robot, options), options.connect.corner)
 
 
 class _Rows(NamedTuple):

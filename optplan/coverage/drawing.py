@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from optplan.coverage.corners import split_at_corners, tight_notes
 from optplan.coverage.placing import Line, canvas_of, counter_clockwise, placed, placement
 from optplan.coverage.relations import connections, inner_before_outer, of_pieces
+from optplan.coverage.stops import follows_curves, split_at_stops, tight_notes, tolerance_of
 from optplan.coverage.zigzag import zigzag
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError, LimitError, located
 from optplan.domain.job import Drawing, FillSettings, Note
-from optplan.domain.options import CoverOptions, Options, PageOptions
+from optplan.domain.options import CoverOptions, Options
 from optplan.domain.ordering import precedence_cycle
 from optplan.domain.path import RAISED
 from optplan.domain.progress import Progress, ProgressCallback
@@ -38,11 +38,6 @@ MAX_STROKES = 100_000
 """Most strokes that one plan may have."""
 
 
-def tolerance_of(page: PageOptions, tool: Tool) -> float:
-    """Greatest distance between a drawn curve and its polyline, m: as asked, or a twentieth of the narrowest mark."""
-    return page.tolerance or min(setting.width for setting in tool.settings[1:]) / 20
-
-
 def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: ProgressCallback) -> Cover:
     """Strokes, areas, start point and precedence of a drawing on its canvas. Raises InputError; see `cover`."""
     job = _with_settings(job, options.cover)
@@ -55,9 +50,12 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
     notes = [*read.notes, *_offset_note(robot), *_loop_note(robot, canvas, options)]
     if canvas is None:
         notes.append(Note("notice", robot.name, "has no canvas: the drawing keeps the size it has on paper"))
-    with located(job.name):
-        where = placement([mark.element for mark in read.marks if mark.drawn or mark.start], canvas)
     tolerance = tolerance_of(options.page, robot.tool)
+    room = canvas
+    if canvas is not None and follows_curves(robot, options):
+        room = replace(canvas, margin=canvas.margin + tolerance)  # by which curves may leave what is drawn
+    with located(job.name):
+        where = placement([mark.element for mark in read.marks if mark.drawn or mark.start], room)
 
     strokes: list[Stroke] = []
     areas: list[Area] = []
@@ -77,9 +75,9 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
             areas += made
         if len(strokes) > MAX_STROKES:
             raise LimitError(f"there are more than {MAX_STROKES} strokes; widen the fill spacing or split it", job.name)
-    notes += tight_notes(strokes, robot, options, tolerance)
+    notes += tight_notes(strokes, robot, options)
     inner = inner_before_outer(strokes) if options.cover.inner_first else []
-    strokes, source = split_at_corners(strokes, robot, options, tolerance)
+    strokes, source = split_at_stops(strokes, robot, options)
     if not strokes:
         raise InputError("nothing in this drawing is to be drawn on this canvas", job.name)
     travels = [k for k, stroke in enumerate(strokes) if stroke.tool == RAISED]

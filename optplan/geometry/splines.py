@@ -48,10 +48,11 @@ class Fitted(NamedTuple):
     """1/m^2"""
 
 
-def euler_splines(points: FloatArray, th0: FloatArray, th1: FloatArray) -> Splines:
+def euler_splines(points: FloatArray, th0: FloatArray, th1: FloatArray, *, round_ends: bool = False) -> Splines:
     """Splines through points (m, n, 2) m, n >= 2, consecutive ones apart; headings th0, th1 (m,) rad at the ends.
 
-    A heading of NaN leaves that end free: its curvature is then 0 (a natural end).
+    A heading of NaN leaves that end free: its curvature is then 0 (a natural end), or, with `round_ends`, the span
+    there is an arc.
     """
     chord = np.diff(points, axis=1)
     r, angle = np.hypot(chord[..., 0], chord[..., 1]), np.arctan2(chord[..., 1], chord[..., 0])
@@ -64,7 +65,7 @@ def euler_splines(points: FloatArray, th0: FloatArray, th1: FloatArray) -> Splin
     a = guess(phi0.ravel(), phi1.ravel()).reshape(phi0.shape)
     settled = np.zeros(len(points), dtype=bool)
     for _ in range(_ROUNDS):
-        state, da, dth, settled = _newton(r, a, phi0, phi1, free0, free1)
+        state, da, dth, settled = _newton(r, a, phi0, phi1, free0, free1, round_ends)
         if settled.all():
             break
         scale = np.minimum(1.0, 0.5 / np.maximum(np.abs(dth).max(axis=1), 1e-300))[:, None]
@@ -80,7 +81,13 @@ def euler_splines(points: FloatArray, th0: FloatArray, th1: FloatArray) -> Splin
 
 
 def _newton(
-    r: FloatArray, a: FloatArray, phi0: FloatArray, phi1: FloatArray, free0: BoolArray, free1: BoolArray
+    r: FloatArray,
+    a: FloatArray,
+    phi0: FloatArray,
+    phi1: FloatArray,
+    free0: BoolArray,
+    free1: BoolArray,
+    round_ends: bool,
 ) -> tuple[tuple[FloatArray, FloatArray], FloatArray, FloatArray, BoolArray]:
     """X and Y of every span, the full Newton step of a (m, n - 1) and of the headings (m, n), and who has arrived."""
     shape = a.shape
@@ -106,16 +113,20 @@ def _newton(
     lower[:, 1:-1], main[:, 1:-1], upper[:, 1:-1] = l1[:, :-1], r1[:, :-1] - l0[:, 1:], -r0[:, 1:]
     gap = k1[:, :-1] - k0[:, 1:]
     right[:, 1:-1] = -(gap + c1[:, :-1] - c0[:, 1:])
-    main[:, 0], upper[:, 0] = np.where(free0, l0[:, 0], 1.0), np.where(free0, r0[:, 0], 0.0)
-    right[:, 0] = np.where(free0, -(k0[:, 0] + c0[:, 0]), 0.0)
-    main[:, -1], lower[:, -1] = np.where(free1, r1[:, -1], 1.0), np.where(free1, l1[:, -1], 0.0)
-    right[:, -1] = np.where(free1, -(k1[:, -1] + c1[:, -1]), 0.0)
+    # a free end: no curvature, or none that changes along its span
+    first, last = (k0 - k1, k1 - k0) if round_ends else (k0, k1)
+    fl, fr, fc = (l0 - l1, r0 - r1, c0 - c1) if round_ends else (l0, r0, c0)
+    ll, lr, lc = (l1 - l0, r1 - r0, c1 - c0) if round_ends else (l1, r1, c1)
+    main[:, 0], upper[:, 0] = np.where(free0, fl[:, 0], 1.0), np.where(free0, fr[:, 0], 0.0)
+    right[:, 0] = np.where(free0, -(first[:, 0] + fc[:, 0]), 0.0)
+    main[:, -1], lower[:, -1] = np.where(free1, lr[:, -1], 1.0), np.where(free1, ll[:, -1], 0.0)
+    right[:, -1] = np.where(free1, -(last[:, -1] + lc[:, -1]), 0.0)
     dth = _tridiagonal(lower, main, upper, right)
     da = fixed + by0 * dth[:, :-1] + by1 * dth[:, 1:]
     apart = np.abs(y).max(axis=1)
     uneven = (np.abs(gap) * np.minimum(r[:, :-1], r[:, 1:])).max(axis=1, initial=0.0)
-    uneven = np.maximum(uneven, np.abs(np.where(free0, k0[:, 0] * r[:, 0], 0.0)))
-    uneven = np.maximum(uneven, np.abs(np.where(free1, k1[:, -1] * r[:, -1], 0.0)))
+    uneven = np.maximum(uneven, np.abs(np.where(free0, first[:, 0] * r[:, 0], 0.0)))
+    uneven = np.maximum(uneven, np.abs(np.where(free1, last[:, -1] * r[:, -1], 0.0)))
     return (x, y), da, dth, (apart < 1e-13) & (uneven < 1e-10)
 
 

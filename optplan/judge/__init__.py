@@ -42,6 +42,7 @@ def verify(plan: Plan) -> Report:
         _continuity.gaps(path, samples),
         _continuity.headings(path, samples, robot, profile),
         _continuity.curvature(path, robot, options, profile),
+        _continuity.sharpness(path, robot, options, profile),
         steps,
     ]
     figures = [*_lengths(path), *orders]

@@ -10,7 +10,7 @@ from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.options import Options
 from optplan.domain.path import Path
 from optplan.domain.report import Check
-from optplan.domain.robot import DiffDrive, Robot
+from optplan.domain.robot import CurvatureLimits, DiffDrive, Robot
 from optplan.judge._findings import (
     ANGLE,
     GAP,
@@ -137,6 +137,30 @@ def steepest(path: Path, profile: Speeds, half: float) -> tuple[IntArray, FloatA
     return np.tile(row, len(places)), kappa.ravel(), v.ravel()
 
 
+def sharpness(path: Path, robot: Robot, options: Options, profile: Speeds | None) -> Check:
+    """Largest |dkappa/ds|, 1/m^2, against what the robot can steer at the speed it has there.
+
+    The worst spot is the one with the largest share of its limit; what jumps is a curvature step.
+    """
+    if profile is None:
+        work, transit = work_and_transit_speed(robot, options)
+        row, speed = np.arange(len(path)), np.where(path.tool > 0, work, transit)
+    else:
+        row, speed = profile.row, np.maximum(profile.before, profile.after)
+    value = np.abs(path.sharpness[row])
+    limit = np.array([_limits(robot, v).sharpness for v in speed.tolist()])
+    if np.isinf(limit).all():
+        return noted("sharpness", float(value.max(initial=0.0)), "1/m^2", "Nothing limits it.")
+    share = np.where(path.length[row] > 0, value, 0.0) / limit
+    worst = int(np.argmax(share))
+    piece, most = int(row[worst]), float(limit[worst])
+    count = len(np.unique(row[share > 1 + RELATIVE]))
+    detail = f"Piece {piece} changes its curvature fastest for its speed of {speed[worst]:.4g} m/s"
+    detail += "." if count == 0 else f"; {count_of(count, 'piece')} too fast."
+    place = place_of(path.start[piece])
+    return held("sharpness", float(value[worst]), most, "1/m^2", place, detail, slack=most * RELATIVE)
+
+
 def curvature_steps(path: Path, samples: Samples, profile: Speeds | None) -> tuple[Check, list[tuple[str, float, str]]]:
     """Curvature jumps (1/m) that are driven over, and the continuity order of the path where it moves.
 
@@ -166,8 +190,12 @@ def _orders(order: int, count: int) -> list[tuple[str, float, str]]:
     return [("continuity order", float(order), ""), ("curvature steps", float(count), "")]
 
 
+def _limits(robot: Robot, speed: float) -> CurvatureLimits:
+    return robot.mobility.curvature_limits(max(speed, 1e-9))
+
+
 def _limit(robot: Robot, speed: float) -> float:
-    return robot.mobility.curvature_limits(max(speed, 1e-9)).curvature
+    return _limits(robot, speed).curvature
 
 
 def _jumps(path: Path, samples: Samples) -> FloatArray:

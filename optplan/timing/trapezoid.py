@@ -62,6 +62,10 @@ def _limits(path: Path, robot: Robot, options: Options) -> tuple[FloatArray, Flo
         bend = np.maximum(np.abs(path.curvature), np.abs(path.curvature + path.sharpness * path.length))
         outer = 1 + bend * mobility.track / 2
         cap = np.minimum(cap, mobility.wheel_speed * mobility.wheel_radius / outer)
+        # along a clothoid the wheels change their speed even while the robot keeps its own
+        with np.errstate(divide="ignore"):
+            steer = mobility.acceleration / (np.abs(path.sharpness) * mobility.track / 2)
+        cap = np.minimum(cap, np.sqrt(steer))
         acceleration = acceleration / outer
     return cap, acceleration
 

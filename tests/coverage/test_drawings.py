@@ -9,21 +9,20 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import optplan as op
 from optplan.coverage import cover
 from optplan.coverage import drawing as module
-from optplan.coverage.corners import least_radius, split_at_corners
 from optplan.coverage.placing import canvas_of, placed, placement
+from optplan.coverage.stops import curves_of, split_at_stops, stops_of
 from optplan.domain.errors import InputError, LimitError
 from optplan.domain.job import Curve, Drawing, Element, FillRule, FillSettings, Surface
 from optplan.domain.options import CoverOptions, Options, PageOptions
 from optplan.domain.result import Cover
 from optplan.domain.robot import Canvas
 from optplan.domain.stroke import Stroke
-from optplan.geometry.rounding import inner_vertices
 from tests.strategies import CAR, PLOTTER, RAKE, array, box, circle, drawing, element, polylines, star_shaped
 
 SYNTAX = replace(RAKE, tool=replace(RAKE.tool, stroke_widths=(2.0,), red_is_travel=True, green_is_start=True))
@@ -70,8 +69,12 @@ def test_canvases() -> None:
 
 
 def test_a_line_across_is_placed() -> None:
-    made = cover(drawing(element("l", [[0, 0], [3, 0]], closed=False)), RAKE)
-    assert made.strokes[0].points == pytest.approx(array([[0.5, 10], [19.5, 10]]))
+    job = drawing(element("l", [[0, 0], [3, 0]], closed=False))
+    # curves may leave the line by the tolerance: a twentieth of the narrowest mark
+    assert cover(job, RAKE).strokes[0].points == pytest.approx(array([[0.505, 10], [19.495, 10]]))
+    assert cover(job, replace(RAKE, mobility=PLOTTER.mobility)).strokes[0].points == pytest.approx(
+        array([[0.5, 10], [19.5, 10]])
+    )
 
 
 def test_nothing_to_draw() -> None:
@@ -198,22 +201,21 @@ def test_forced_entries() -> None:
         cover(job.with_element("e", entry=9), RAKE)
 
 
+@settings(max_examples=60)
 @given(st.one_of(polylines(), star_shaped()), st.booleans(), st.floats(0.1, 3))
-def test_strokes_are_split_at_corners(points: np.ndarray, closed: bool, corner: float) -> None:
-    options = Options(connect=op.ConnectOptions(corner))
+def test_strokes_are_split_at_stops(points: np.ndarray, closed: bool, corner: float) -> None:
+    options = Options(page=PageOptions(tolerance=0.05), connect=op.ConnectOptions(corner))
     stroke = Stroke("s", points, closed=closed)
-    assert split_at_corners([stroke], RAKE, options, 0.05) == ([stroke], [0])
-    parts = split_at_corners([stroke], CAR, options, 0.05)[0]
+    assert split_at_stops([stroke], RAKE, options) == ([stroke], [0])
+    parts = split_at_stops([stroke], CAR, options)[0]
     assert sum(part.length for part in parts) == pytest.approx(stroke.length)
-    radius = least_radius(CAR, options)
-    assert radius == 0.5
     for part in parts:
-        if len(part.points) > 2:
-            assert not inner_vertices(part.points, part.closed, 0.05, radius, corner).corner.any()
+        # split again, they stay whole
+        assert len(stops_of(part, CAR, options)) == 0
     if len(parts) > 1:
         assert [part.id for part in parts] == [f"s~{k}" for k in range(1, len(parts) + 1)]
         for one, other in pairwise(parts):
             assert one.points[-1].tolist() == other.points[0].tolist()
         if closed:
             assert parts[-1].points[-1].tolist() == parts[0].points[0].tolist()
-    assert least_radius(PLOTTER, options) == 0
+    assert curves_of(stroke, PLOTTER, options) is None

@@ -186,3 +186,19 @@ def test_wheels_are_fastest_inside_a_piece() -> None:
         report = verify(replace(plan, robot=replace(RAKE, mobility=mobility), trajectory=trajectory))
         fastest = max(2 * math.sqrt(1 - x) * (1 + 2 * x * track / 2) for x in np.linspace(0, 1, 100_001))
         assert check(report, "wheel speed").value == pytest.approx(fastest / 0.1, rel=1e-8)
+
+
+def test_sharpness_is_held_against_what_the_wheels_can_do() -> None:
+    """v^2 sigma track / 2 is an acceleration of the wheels; a chosen limit holds at any speed."""
+    pen = Pen(np.zeros(2))
+    pen.curve(1.0)
+    path = replace(pen.path, sharpness=np.array([1.9]))
+    plan = replace(plan_of(RAKE, path, Cover(())), trajectory=None)
+    found = check(verify(plan), "sharpness")
+    # at a transit speed of 0.6 m/s, with wheels that gain 4 m/s^2 half a metre apart
+    assert (found.value, found.limit) == pytest.approx((1.9, 4.0 / (0.25 * 0.6**2)))
+    assert found.verdict is Verdict.PASSED
+    strict = replace(RAKE, mobility=replace(RAKE.mobility, sharpness=1.8))  # type: ignore[arg-type]
+    found = check(verify(replace(plan, robot=strict)), "sharpness")
+    assert (found.verdict, found.limit) == (Verdict.FAILED, 1.8)
+    assert check(verify(replace(plan, robot=PLOTTER)), "sharpness").verdict is Verdict.NOTED
