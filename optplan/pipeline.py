@@ -10,6 +10,7 @@ from pathlib import Path
 from optplan.avoiding import avoid_finished
 from optplan.connectors.driving import connect
 from optplan.coverage import cover
+from optplan.detours import with_detours
 from optplan.domain.errors import InputError
 from optplan.domain.job import Job
 from optplan.domain.options import Options
@@ -112,6 +113,7 @@ def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> P
     first = replace(rule, seconds=rule.seconds / 2) if order.avoid > 0 else rule
     clock = rule.start()
     ordering = solve(problem, order.solver, first, order.seed, progress=progress)
+    ordering, problem = with_detours(ordering, problem, ways, before.cover, robot, options, clock, progress)
     if order.avoid > 0 and problem.clusters > 1 and math.isfinite(ordering.cost):
         ordering = avoid_finished(ordering, problem, ways, before.cover, robot, options, clock, progress)
     visits = ways.take(ordering.nodes) if math.isfinite(ordering.cost) else None

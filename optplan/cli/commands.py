@@ -11,9 +11,11 @@ import typer
 
 from optplan.cli import output
 from optplan.cli.settings import (
+    Areas,
     Avoid,
     Boundary,
     CanvasSize,
+    Clearance,
     CloseGap,
     ConfigFile,
     Corner,
@@ -27,6 +29,7 @@ from optplan.cli.settings import (
     Links,
     Margin,
     Metric,
+    OnCanvas,
     RobotName,
     Seed,
     SolverName,
@@ -125,6 +128,9 @@ def plan_command(
     entries: Entries = None,
     avoid: Avoid = None,
     corner: Corner = None,
+    areas: Areas = None,
+    on_canvas: OnCanvas = None,
+    clearance: Clearance = None,
     work_speed: WorkSpeed = None,
     transit_speed: TransitSpeed = None,
 ) -> None:
@@ -352,6 +358,9 @@ def order(
     start: Start = None,
     entries: Entries = None,
     avoid: Avoid = None,
+    areas: Areas = None,
+    on_canvas: OnCanvas = None,
+    clearance: Clearance = None,
 ) -> None:
     """Order: which stroke after which, entered where."""
     from optplan.cli.ordering import is_instance, order_instance
@@ -397,6 +406,9 @@ def connect(
     json: Json = False,
     metric: Metric = None,
     corner: Corner = None,
+    areas: Areas = None,
+    on_canvas: OnCanvas = None,
+    clearance: Clearance = None,
 ) -> None:
     """Connect: the path along all strokes and between them."""
     _stage("connect", file, out, dict(locals()), rest, force, quiet, json)

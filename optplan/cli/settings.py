@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from optplan.domain.errors import InputError
+from optplan.domain.errors import InputError, located
 
 if TYPE_CHECKING:
     from optplan.domain.job import Job
@@ -58,6 +58,14 @@ Avoid = Annotated[
     float | None, typer.Option("--avoid-finished", help="Metres worth a metre not driven over finished work.")
 ]
 Corner = Annotated[str | None, typer.Option(help="Sharper vertices are corners, degrees.")]
+Areas = Annotated[
+    Path | None,
+    typer.Option("--areas", help="JSON file with polygons for connectors: keep_out, keep_in, clearance."),
+]
+OnCanvas = Annotated[
+    bool | None, typer.Option("--on-canvas/--off-canvas", help="Connectors stay on the canvas, or may leave it.")
+]
+Clearance = Annotated[str | None, typer.Option(help="Of connectors from areas and border, e.g. 30cm.")]
 WorkSpeed = Annotated[str | None, typer.Option(help="With the tool down, m/s.")]
 TransitSpeed = Annotated[str | None, typer.Option(help="With the tool up, m/s.")]
 
@@ -77,6 +85,8 @@ _PLACES = {
     "entries": ("order", "entries"),
     "avoid": ("order", "avoid"),
     "corner": ("connect", "corner"),
+    "on_canvas": ("connect", "on_canvas"),
+    "clearance": ("connect", "clearance"),
     "work_speed": ("time", "work_speed"),
     "transit_speed": ("time", "transit_speed"),
 }
@@ -115,6 +125,10 @@ def settings_of(base: dict[str, Any], flags: dict[str, Any]) -> Options:
         tables.setdefault("page", {}).update(width=width, height=height)
     if flags.get("start") is not None:
         tables.setdefault("order", {})["start"] = _pair(flags["start"], "--start")
+    if flags.get("areas") is not None:
+        tables.setdefault("connect", {}).update(_areas(flags["areas"]))
+        if flags.get("clearance") is not None:
+            tables["connect"]["clearance"] = flags["clearance"]
     for text in flags.get("fill") or ():
         id, fill = _element_fill(text)
         tables.setdefault("cover", {}).setdefault("elements", {})[id] = fill
@@ -177,6 +191,24 @@ def _pair(text: str, flag: str) -> tuple[str, str]:
     if len(parts) != 2:
         raise InputError(f"{text!r} is no place; expected X,Y", flag)
     return parts[0], parts[1]
+
+
+def _areas(file: Path) -> dict[str, Any]:
+    """Polygons of a JSON file, as settings; they are checked with the rest."""
+    import json
+
+    from optplan.schema.files import read_text
+
+    try:
+        found = json.loads(read_text(file))
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"is not JSON: {error}", str(file)) from None
+    known = {"keep_out", "keep_in", "clearance"}
+    if not isinstance(found, dict) or not found or not set(found) <= known:
+        raise InputError(f"expected an object with {', '.join(sorted(known))}", str(file))
+    with located(str(file)):
+        _validated({"connect": found}, str(file))
+    return found
 
 
 def _link(text: str) -> list[str | int]:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from optplan.connectors.around import Roads, roads_of
 from optplan.connectors.families import Family, family_of, start_states
 from optplan.connectors.ways import driven
 from optplan.domain.arrays import FloatArray
@@ -17,6 +18,7 @@ from optplan.domain.robot import Robot
 from optplan.domain.stroke import Traversals
 from optplan.geometry.cc import cc_path
 from optplan.geometry.clothoids import clothoid_displacement
+from optplan.geometry.curves import Curve
 from optplan.geometry.dubins import dubins_path
 from optplan.geometry.rounding import Pieces, wrapped
 
@@ -68,7 +70,7 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     InputError : a metric that this robot cannot have
     """
     options = options or Options()
-    family = family_of(robot, options)
+    family, roads = family_of(robot, options), roads_of(cover, robot, options)
     turns = not math.isinf(robot.mobility.turn_rate)
     rows = _Rows([], [], [], [], [], [], [], [], [])
     start = options.order.start or cover.start
@@ -90,7 +92,7 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
             pieces = driven(stroke, visit.entry_vertex, visit.reverse, robot, options)
             there = np.array([*pieces.start[0], pieces.heading[0], pieces.curvature[0]])
         if here is not None:
-            rows.add(connector(here, there, family, turns), RAISED, -1)
+            rows.add(connector(here, there, family, turns, roads), RAISED, -1)
         # pins that stay down while the robot turns sharply would draw a swirl
         sharp = (pieces.length == 0) & (np.abs(pieces.turn) > options.connect.corner) & turns
         tool = np.where(sharp, RAISED, stroke.tool)
@@ -101,8 +103,15 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     return _path(rows)
 
 
-def connector(here: FloatArray, there: FloatArray, family: Family, turns: bool) -> Pieces:
-    """The movement between two states (4,) x, y, heading, curvature; `turns`: with turns on the spot at both ends."""
+def connector(here: FloatArray, there: FloatArray, family: Family, turns: bool, roads: Roads | None = None) -> Pieces:
+    """The movement between two states (4,) x, y, heading, curvature.
+
+    `turns`: with turns on the spot at both ends. With a road map it keeps out of what is forbidden, if there is a way.
+    """
+    if roads is not None:
+        way = roads.between(here, there)
+        if way.curves and way.source != "direct":
+            return _along(way.curves, here, there, turns and not family.headings)
     if family.metric == "dubins":
         return _dubins(here, there, family.radius)
     if family.metric == "cc":
@@ -117,6 +126,22 @@ def connector(here: FloatArray, there: FloatArray, family: Family, turns: bool) 
         made.insert(0, _turn(here, _short(heading - here[2])))
         made.append(_turn(np.array([*there[:2], heading, 0.0]), _short(there[2] - heading)))
     return _pieces(made)
+
+
+def _along(curves: tuple[Curve, ...], here: FloatArray, there: FloatArray, turns: bool) -> Pieces:
+    """The pieces of curves one after the other, with turns on the spot before, between and behind them."""
+    rows: list[FloatArray] = []
+    at = here
+    for curve in curves:
+        if turns:
+            rows.append(np.array([[*_turn(at, _short(curve.start[2] - at[2])), 0.0]]))
+        zero = np.zeros(len(curve))
+        rows.append(np.column_stack([curve.states[:-1], curve.curvature, curve.length, zero, curve.sharpness]))
+        at = curve.end
+    if turns:
+        rows.append(np.array([[*_turn(at, _short(there[2] - at[2])), 0.0]]))
+    table = np.concatenate(rows)
+    return Pieces(table[:, :2], *table[:, 2:].T)
 
 
 def _dubins(here: FloatArray, there: FloatArray, radius: float) -> Pieces:

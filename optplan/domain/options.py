@@ -107,6 +107,9 @@ class OrderOptions:
             raise InputError(f"order entries is {self.entries}; expected 1 or more")
 
 
+Polygon = tuple[tuple[float, float], ...]
+
+
 @dataclass(frozen=True)
 class ConnectOptions:
     """How strokes are driven and joined.
@@ -114,14 +117,30 @@ class ConnectOptions:
     Parameters
     ----------
     corner : deflection above which a vertex of a stroke is a corner, rad: the robot stops there and turns, or, when it
-        cannot, the stroke is split. Gentler vertices are rounded by arcs that stay within the page tolerance.
+        cannot, the stroke is split. Gentler vertices are rounded within the page tolerance.
+    keep_out : polygons of (x, y) m that connectors do not enter
+    keep_in : a polygon of (x, y) m that connectors do not leave
+    on_canvas : whether connectors stay on the canvas
+    clearance : between connectors and the borders of all of these, m
     """
 
     corner: float = math.radians(30)
+    keep_out: tuple[Polygon, ...] = ()
+    keep_in: Polygon | None = None
+    on_canvas: bool = False
+    clearance: float = 0.0
 
     def __post_init__(self) -> None:
         if not 0 < self.corner <= math.pi:
             raise InputError(f"corner is {self.corner} rad; expected more than 0 and at most pi")
+        if isinstance(self.clearance, bool) or not 0 <= self.clearance <= MAX_NUMBER:
+            raise InputError(f"the clearance is {self.clearance} m; expected 0 to {MAX_NUMBER:g}")
+        named = [(f"keep-out polygon {k}", ring) for k, ring in enumerate(self.keep_out)]
+        for name, ring in [*named, *([("the keep-in polygon", self.keep_in)] if self.keep_in is not None else [])]:
+            if len(ring) < 3:
+                raise InputError(f"{name} has {len(ring)} vertices; expected 3 or more")
+            if not all(abs(x) <= MAX_NUMBER for place in ring for x in place):
+                raise InputError(f"{name} has a vertex that is no place; expected x, y in m, at most {MAX_NUMBER:g}")
 
 
 @dataclass(frozen=True)

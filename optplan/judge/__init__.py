@@ -10,7 +10,7 @@ from optplan.domain.errors import InputError
 from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check, Report
 from optplan.domain.result import Plan
-from optplan.judge import _continuity, _coverage, _finished, _motion, _ordering, _strokes
+from optplan.judge import _areas, _continuity, _coverage, _finished, _motion, _ordering, _strokes
 from optplan.judge._findings import deviation_limit, unchecked
 from optplan.judge._integrate import integrate
 from optplan.judge._speeds import speeds
@@ -59,9 +59,10 @@ def verify(plan: Plan) -> Report:
         checks.append(_strokes.visits(path, samples, plan.visits))
     checks.append(_strokes.tool(path, robot))
     if cover is None:
-        checks += unchecked(["canvas", "margin", *_coverage.NAMES, _finished.NAME], "the plan has no strokes")
+        names = ["canvas", "margin", _areas.NAME, *_coverage.NAMES, _finished.NAME]
+        checks += unchecked(names, "the plan has no strokes")
     else:
-        checks += _strokes.canvas(path, samples, cover)
+        checks += [*_strokes.canvas(path, samples, cover), _areas.areas(path, samples, cover, options)]
         covered, areas = _coverage.coverage(path, samples, cover, robot, limit, exact)
         checks += [*covered, _finished.over_finished(path, samples, cover, robot)]
     if plan.trajectory is None or profile is None:

@@ -68,6 +68,7 @@ def figure(plan: Plan) -> Figure:
         _draw_strokes(axes, plan, colours, points_per_metre)
     else:
         _draw_path(axes, plan, plan.path, colours, points_per_metre)
+    _draw_areas(axes, plan)
     _draw_places(axes, plan, colours)
     _draw_title(made, plan, colours)
     return made
@@ -226,6 +227,15 @@ def _draw_places(axes: Axes, plan: Plan, colours: _Colours) -> None:
         axes.plot(
             [x[0], x[1], x[1], x[0], x[0]], [y[0], y[0], y[1], y[1], y[0]], ":", color="#999999", lw=0.8, zorder=1
         )
+
+
+def _draw_areas(axes: Axes, plan: Plan) -> None:
+    """What connectors keep out of, and the border of what they keep in."""
+    asked = plan.options.connect
+    for ring in asked.keep_out:
+        axes.fill(*np.array(ring).T, facecolor="#c0392b22", edgecolor="#c0392b", lw=0.8, hatch="///", zorder=1)
+    if asked.keep_in is not None:
+        axes.plot(*np.array([*asked.keep_in, asked.keep_in[0]]).T, "--", color="#c0392b", lw=0.8, zorder=1)
 
 
 def _draw_title(made: Figure, plan: Plan, colours: _Colours) -> None:

@@ -61,6 +61,12 @@ class ConnectModel(Model):
     """How strokes are driven and joined."""
 
     corner: Angle = Field(math.radians(30), description="a sharper vertex is a corner; a bare number is degrees")
+    keep_out: list[list[tuple[Length, Length]]] = Field(
+        default_factory=list, description="polygons that connectors do not enter"
+    )
+    keep_in: list[tuple[Length, Length]] | None = Field(None, description="a polygon that connectors do not leave")
+    on_canvas: bool = Field(False, description="connectors stay on the canvas")
+    clearance: Length = Field(0.0, description="between connectors and the borders of these areas")
 
 
 class TimeModel(Model):
@@ -97,7 +103,13 @@ def options_from(model: OptionsModel) -> Options:
                 tuple(cover.links),
             ),
             OrderOptions(**model.order.model_dump()),
-            ConnectOptions(**model.connect.model_dump()),
+            ConnectOptions(
+                model.connect.corner,
+                tuple(tuple(ring) for ring in model.connect.keep_out),
+                None if model.connect.keep_in is None else tuple(model.connect.keep_in),
+                model.connect.on_canvas,
+                model.connect.clearance,
+            ),
             TimeOptions(**model.time.model_dump()),
         )
 
@@ -115,7 +127,7 @@ def options_model(options: Options) -> OptionsModel:
             "page": asdict(options.page),
             "cover": cover,
             "order": asdict(options.order),
-            "connect": {"corner": f"{options.connect.corner!r} rad"},
+            "connect": {**asdict(options.connect), "corner": f"{options.connect.corner!r} rad"},
             "time": asdict(options.time),
         }
     )

@@ -35,6 +35,7 @@ def test_it_is_a_connector_and_no_worse(seed: int, objective: Objective) -> None
     answer = optimised_connector(start, end, kappa, sigma, objective, PACE)
     curve = answer.curve
     assert answer.converged
+    assert curve is not None
     reached = curve.end
     assert math.hypot(*(reached[:2] - end[:2])) < 1e-6
     assert abs(math.remainder(reached[2] - end[2], 2 * math.pi)) < 1e-6
@@ -50,7 +51,9 @@ def test_it_is_a_connector_and_no_worse(seed: int, objective: Objective) -> None
 
 def test_nowhere_to_go() -> None:
     here = np.array([1.0, 2.0, 0.5, 0.1])
-    assert optimised_connector(here, here, 1.0, 1.0).curve.total == 0
+    curve = optimised_connector(here, here, 1.0, 1.0).curve
+    assert curve is not None
+    assert curve.total == 0
 
 
 def test_bad_input() -> None:
@@ -77,5 +80,6 @@ def test_it_meets_the_best_known() -> None:
         query = {key: float(queries[row["id"]][key]) for key in ("x0", "y0", "th0", "x1", "y1", "th1")}
         start, end = np.array([*list(query.values())[:3], 0.0]), np.array([*list(query.values())[3:], 0.0])
         answer = optimised_connector(start, end, float(row["kappa_max"]), float(row["sigma_max"]))
+        assert answer.curve is not None
         good += answer.curve.total <= 1.002 * float(row["best_known_len"])
     assert good >= 0.98 * len(rows)

@@ -1,0 +1,107 @@
+"""Ways around forbidden areas in the costs of an order: looked for only where an order would use them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from optplan.connectors.around import Roads, roads_of
+from optplan.connectors.families import family_of, start_states
+from optplan.domain.options import Options
+from optplan.domain.ordering import MatrixCosts, Ordering, OrderingProblem
+from optplan.domain.progress import Progress, ProgressCallback
+from optplan.domain.result import Cover
+from optplan.domain.robot import Robot
+from optplan.domain.stop import RunningStop, StopRule
+from optplan.domain.stroke import Traversals
+from optplan.ordering import solve
+from optplan.ordering.arrays import DENSE_NODES, dense_costs
+
+ROUNDS = 100
+"""Most times that an order is solved again."""
+
+
+def with_detours(
+    found: Ordering,
+    problem: OrderingProblem,
+    ways: Traversals,
+    cover: Cover,
+    robot: Robot,
+    options: Options,
+    clock: RunningStop,
+    progress: ProgressCallback,
+) -> tuple[Ordering, OrderingProblem]:
+    """An order whose costs are the lengths of the ways around forbidden areas, and the problem with these costs.
+
+    The connectors that an order uses are measured with their ways around; the problem is solved again with these costs,
+    until an order uses measured connectors only, or the limits are reached. A connector that heeds nothing is never
+    longer than its way around: so a bound stays a bound for the problem with all ways around.
+
+    Parameters
+    ----------
+    found : the order of connectors that heed nothing
+    problem, ways, cover, robot, options : what was solved; nothing is done when the options forbid nothing
+    clock : time limit and cancel
+    progress : called after each round
+
+    Raises
+    ------
+    InputError : areas that are none, or a metric without ways around
+    """
+    roads = roads_of(cover, robot, options)
+    if roads is None or not math.isfinite(found.cost) or problem.clusters == 0:
+        return found, problem
+    if problem.nodes > DENSE_NODES:
+        more = f"areas are not in the costs: {problem.nodes} ways of driving, at most {DENSE_NODES}"
+        return replace(found, message=f"{found.message}; {more}".removeprefix("; ")), problem
+    costs, begin = dense_costs(problem).copy(), problem.start_costs.copy()
+    start, family = options.order.start or cover.start, family_of(robot, options)
+    measured: set[tuple[int, int]] = set()
+    current, longer, blocked = found, 0, 0
+    for rounds in range(ROUNDS):
+        nodes = current.nodes
+        new = [arc for arc in zip([-1, *nodes[:-1].tolist()], nodes.tolist(), strict=True) if arc not in measured]
+        changed = False
+        for tail, head in new:
+            measured.add((tail, head))
+            if tail < 0 and start is None:
+                continue
+            if tail < 0:
+                entry = ways.entry[head : head + 1]
+                heading = start_states(start, entry, family)[0][0] if family.headings and start else 0.0
+                here = np.array([*(start or (0.0, 0.0)), heading, 0.0])
+                before = float(begin[head])
+            else:
+                here, before = ways.exit[tail, [0, 1, 3, 4]], float(costs[tail, head])
+            length = _length(roads, here, ways.entry[head, [0, 1, 3, 4]])
+            if length > before * (1 + 1e-9):
+                changed, longer, blocked = True, longer + 1, blocked + math.isinf(length)
+                if tail < 0:
+                    begin[head] = length
+                else:
+                    costs[tail, head] = length
+        progress(Progress("order", (rounds + 1) / ROUNDS, current.cost, current.bound))
+        problem = replace(problem, costs=MatrixCosts(costs), start_costs=begin)
+        if not changed:
+            break
+        limits = StopRule(max(clock.remaining, 1e-3), clock.rule.iterations, cancelled=clock.rule.cancelled)
+        first = nodes if math.isfinite(problem.cost_of(nodes)) else None
+        answer = solve(problem, options.order.solver, limits, options.order.seed, start=first)
+        if not math.isfinite(answer.cost):
+            text = "forbidden areas leave no order of the strokes that was found"
+            return replace(found, message=f"{found.message}; {text}".removeprefix("; ")), problem
+        current = answer
+    cost = problem.cost_of(current.nodes)
+    text = f"{longer} connectors were measured around forbidden areas"
+    text += f", {blocked} of them have no way" if blocked else ""
+    message = f"{current.message}; {text}".removeprefix("; ")
+    bound = min(current.bound, cost)
+    return replace(current, cost=cost, bound=bound, message=message), problem
+
+
+def _length(roads: Roads, here: np.ndarray, there: np.ndarray) -> float:
+    """m; 0 between the same places, infinite when there is no way."""
+    way = roads.between(here, there)
+    return 0.0 if way.source == "the ends are the same" else way.length
