@@ -10,7 +10,7 @@ import numpy as np
 
 from optplan.coverage.placing import Line, canvas_of, counter_clockwise, placed, placement
 from optplan.coverage.relations import connections, inner_before_outer, of_pieces
-from optplan.coverage.stops import follows_curves, split_at_stops, tight_notes, tolerance_of
+from optplan.coverage.stops import split_at_stops, tight_notes, tolerance_of
 from optplan.coverage.zigzag import zigzag
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError, LimitError, located
@@ -51,11 +51,8 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
     if canvas is None:
         notes.append(Note("notice", robot.name, "has no canvas: the drawing keeps the size it has on paper"))
     tolerance = tolerance_of(options.page, robot.tool)
-    room = canvas
-    if canvas is not None and follows_curves(robot, options):
-        room = replace(canvas, margin=canvas.margin + tolerance)  # by which curves may leave what is drawn
     with located(job.name):
-        where = placement([mark.element for mark in read.marks if mark.drawn or mark.start], room)
+        where = placement([mark.element for mark in read.marks if mark.drawn or mark.start], canvas)
 
     strokes: list[Stroke] = []
     areas: list[Area] = []

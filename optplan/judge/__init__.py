@@ -11,7 +11,7 @@ from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check, Report
 from optplan.domain.result import Plan
 from optplan.judge import _areas, _continuity, _coverage, _finished, _motion, _ordering, _strokes
-from optplan.judge._findings import deviation_limit, unchecked
+from optplan.judge._findings import deviation_limit, page_tolerance, unchecked
 from optplan.judge._integrate import integrate
 from optplan.judge._speeds import speeds
 
@@ -62,7 +62,10 @@ def verify(plan: Plan) -> Report:
         names = ["canvas", "margin", _areas.NAME, *_coverage.NAMES, _finished.NAME]
         checks += unchecked(names, "the plan has no strokes")
     else:
-        checks += [*_strokes.canvas(path, samples, cover), _areas.areas(path, samples, cover, options)]
+        checks += [
+            *_strokes.canvas(path, samples, cover, page_tolerance(robot, options)),
+            _areas.areas(path, samples, cover, options),
+        ]
         covered, areas = _coverage.coverage(path, samples, cover, robot, limit, exact)
         checks += [*covered, _finished.over_finished(path, samples, cover, robot)]
     if plan.trajectory is None or profile is None:

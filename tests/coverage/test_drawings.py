@@ -70,11 +70,7 @@ def test_canvases() -> None:
 
 def test_a_line_across_is_placed() -> None:
     job = drawing(element("l", [[0, 0], [3, 0]], closed=False))
-    # curves may leave the line by the tolerance: a twentieth of the narrowest mark
-    assert cover(job, RAKE).strokes[0].points == pytest.approx(array([[0.505, 10], [19.495, 10]]))
-    assert cover(job, replace(RAKE, mobility=PLOTTER.mobility)).strokes[0].points == pytest.approx(
-        array([[0.5, 10], [19.5, 10]])
-    )
+    assert cover(job, RAKE).strokes[0].points == pytest.approx(array([[0.5, 10], [19.5, 10]]))
 
 
 def test_nothing_to_draw() -> None:

@@ -160,13 +160,13 @@ def _changed(*place: object, value: object) -> str:
     ("place", "value", "message"),
     [
         (("version",), "2.0", "format version 2.0"),
-        (("version",), "1.3", "Update optplan"),
+        (("version",), "1.4", "Update optplan"),
         (("version",), "0.9", "Write it again"),
-        (("version",), "1", "expected '1.2'"),
-        (("version",), "1.²", "expected '1.2'"),
-        (("version",), "1." + "9" * 5000, "expected '1.2'"),
-        (("version",), None, "expected '1.2'"),
-        (("version",), ["1", "0"], "expected '1.2'"),
+        (("version",), "1", "expected '1.3'"),
+        (("version",), "1.²", "expected '1.3'"),
+        (("version",), "1." + "9" * 5000, "expected '1.3'"),
+        (("version",), None, "expected '1.3'"),
+        (("version",), ["1", "0"], "expected '1.3'"),
         (("format",), "a poem", "format: "),
         (("colour",), "red", "colour: is not known"),
         (("cover", "strokes", 0, "points", 0, 0), math.nan, "holds NaN"),
@@ -222,12 +222,12 @@ def test_all_errors_are_said_at_once() -> None:
         assert place in str(caught.value)
 
 
-@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2"])
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2", "1.3"])
 def test_older_minor_versions_are_read(monkeypatch: pytest.MonkeyPatch, version: str) -> None:
-    monkeypatch.setattr(base, "VERSION", "1.2")
+    monkeypatch.setattr(base, "VERSION", "1.3")
     plan_from_json(_changed("version", value=version))
-    with pytest.raises(InputError, match=r"reads 1\.0 to 1\.2"):
-        plan_from_json(_changed("version", value="1.3"))
+    with pytest.raises(InputError, match=r"reads 1\.0 to 1\.3"):
+        plan_from_json(_changed("version", value="1.4"))
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "1", "null", '"x"', "[" * 100_000, "\ufeff{}", b"\xff\xff", b"\x00"])
