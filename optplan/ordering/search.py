@@ -12,6 +12,7 @@ import numpy as np
 from optplan.domain.arrays import IntArray
 from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason
+from optplan.ordering.branched import branchable, branched
 from optplan.ordering.graph import circular_graph
 from optplan.ordering.local import nearest_neighbour
 from optplan.ordering.method import Run
@@ -25,6 +26,10 @@ COLD = 0.1
 """Temperature in the beginning and at the end of a run, in mean arcs of the best path."""
 LEAST, EACH = 5_000, 200
 """Iterations when nothing ends the search, and those added for each cluster."""
+BRANCHING = 0.2
+"""Share of the limits for branching on assignments, before anything is annealed."""
+LOOKS = 100_000
+"""Costs that branching looks at in about the time of an iteration."""
 SLICE = 0.03
 """Seconds between two looks at the stop rule."""
 ENDLESS = 2**62
@@ -87,6 +92,10 @@ def _anneal(run: Run, anchor: int | None) -> StopReason:
     if anchor is not None:
         start = np.roll(start, -int(np.flatnonzero(run.problem.cluster[start] == anchor)[0]))
     graph = circular_graph(run.problem, anchor, run.stop)
+    if run.start is None and branchable(graph):
+        start, optimal = _branched(run, graph, anchor, start)
+        if optimal:
+            return run.stop() or StopReason.FINISHED
     state = _state(graph, run.problem.cluster[start], start, run.seed)
     limit = run.rule.iterations
     timed = limit is None and math.isfinite(run.rule.seconds)
@@ -109,6 +118,20 @@ def _anneal(run: Run, anchor: int | None) -> StopReason:
         # how long a slice takes changes only when the rules are looked at, not what is found
         spent = max(time.perf_counter() - began, 1e-6)
         budget = int(budget * min(2.0, max(0.5, SLICE / spent)))
+
+
+def _branched(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> tuple[IntArray, bool]:
+    """The better of the given path and that from assignments, and whether it is optimal."""
+    rule = run.rule
+    timed = rule.iterations is None and math.isfinite(rule.seconds)
+    looks = math.inf if timed else BRANCHING * LOOKS * (rule.iterations or LEAST + EACH * run.problem.clusters)
+    until = run.clock.elapsed + BRANCHING * run.clock.remaining if timed else math.inf
+    depot = len(graph.first) - 2
+    first = np.append(depot, start) if anchor is None else start
+    tour, optimal = branched(graph, first, lambda: run.stop() or run.clock.elapsed > until, looks)
+    path = tour[1:] if anchor is None else tour
+    run.offer(path)
+    return path, optimal
 
 
 def _start(run: Run) -> tuple[IntArray | None, StopReason]:
@@ -141,7 +164,7 @@ def _state(graph: Graph, clusters: IntArray, nodes: IntArray, seed: int) -> Stat
     count = np.zeros(9, dtype=np.int64)
     count[ACTIVE] = count[QUEUE] = size
     cost = float(cost_of(graph, rows))
-    mean = max(abs(cost) / size, 1e-300)
+    mean = max(abs(cost + graph.offset) / size, 1e-300)
     return State(
         rows,
         rows.copy(),
