@@ -12,7 +12,7 @@ from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.costs import DubinsCosts, EuclidCosts
 from optplan.domain.ordering import OrderingProblem
 from optplan.ordering.arrays import DENSE_DUBINS, DENSE_NODES, dense_costs, fixed, grouped, partners
-from optplan.ordering.duals import reduced_costs
+from optplan.ordering.duals import prices
 from optplan.ordering.near import nearest_clusters
 
 if TYPE_CHECKING:
@@ -59,15 +59,21 @@ def circular_graph(problem: OrderingProblem, anchor: int | None, stop: Callable[
         int(sizes.argmin()),
         0 if problem.nodes == count else int((sizes * np.roll(sizes, 1)).sum()) * int(sizes.min()),
     )
+    offset = 0.0
     if distant:
         near = _near_placed(problem, size)
     else:
         arcs = _cheapest(data, first, forbidden)
         # where both directions cost about the same, assignments are pairs back and forth and their prices say little;
         # where all clusters are near, prices would leave out none
-        plain = flags[MIRROR] != 0 or size - 1 <= NEAR
-        near = _nearest(arcs if plain else reduced_costs(arcs, stop))
+        if flags[MIRROR] == 0 and size - 1 > NEAR:
+            leave, enter = prices(arcs, stop)
+            arcs -= leave[:, None] + enter
+            data -= np.repeat(leave, sizes)[:, None] + np.repeat(enter, sizes)
+            offset = float(leave.sum() + enter.sum())
+        near = _nearest(arcs)
     return Graph(
+        offset,
         float(problem.costs.radius) if isinstance(problem.costs, DubinsCosts) else 0.0,
         fixed(data),
         fixed(first),
@@ -188,9 +194,12 @@ def _nearest(arcs: FloatArray) -> IntArray:
     wanted = min(NEAR, size - 1)
     near = np.empty((2, size, wanted), dtype=np.int64)
     # equally near ones in random order, else the same few would be everyone's neighbours
-    random = np.random.default_rng(0).random((size, size))
-    for side, costs in enumerate((arcs, np.ascontiguousarray(arcs.T))):
-        order = np.lexsort((random, costs), axis=1)[:, :wanted]
+    keys = np.empty((size, size), dtype=np.complex128)
+    keys.imag = np.random.default_rng(0).random((size, size))
+    for side, costs in enumerate((arcs, arcs.T)):
+        keys.real = costs
+        order = np.argpartition(keys, wanted - 1, axis=1)[:, :wanted]
+        order = np.take_along_axis(order, np.argsort(np.take_along_axis(keys, order, axis=1), axis=1), axis=1)
         near[side] = np.where(np.isinf(np.take_along_axis(costs, order, axis=1)), -1, order)
     return near
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 import math
 import time
 from dataclasses import replace
@@ -12,6 +13,8 @@ import numpy as np
 from optplan.domain.arrays import IntArray
 from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason
+from optplan.ordering.arrays import grouped, partners
+from optplan.ordering.branched import branchable, branched
 from optplan.ordering.graph import circular_graph
 from optplan.ordering.local import nearest_neighbour
 from optplan.ordering.method import Run
@@ -21,10 +24,16 @@ if TYPE_CHECKING:
     from optplan.ordering._kernels.tour import Graph, State
 
 HOT = 2.0
-COLD = 0.1
+COLD = 0.05
 """Temperature in the beginning and at the end of a run, in mean arcs of the best path."""
 LEAST, EACH = 5_000, 200
 """Iterations when nothing ends the search, and those added for each cluster."""
+BRANCHING = 0.2
+"""Share of the limits for branching on assignments, before anything is annealed."""
+LOOKS = 100_000
+"""Costs that branching looks at in about the time of an iteration."""
+PILOT = 0.28
+"""Share of the limits for each direction, before the better one gets the rest."""
 SLICE = 0.03
 """Seconds between two looks at the stop rule."""
 ENDLESS = 2**62
@@ -65,10 +74,7 @@ def _firsts(problem: OrderingProblem) -> list[int]:
 def _anneal_from(run: Run, first: int, share: float) -> StopReason:
     """Search the closed paths that begin with this cluster, with a share of what is left of the limits."""
     problem = run.problem
-    limit = run.rule.iterations
-    part = run.within(
-        share * run.clock.remaining, None if limit is None else math.ceil(share * max(0, limit - run.iterations))
-    )
+    part = _part(run, share)
     part.problem = replace(problem, start_costs=np.where(problem.cluster == first, problem.start_costs, np.inf))
     if part.start is not None and problem.cluster[part.start[0]] != first:
         part.start = None
@@ -77,16 +83,82 @@ def _anneal_from(run: Run, first: int, share: float) -> StopReason:
     return stopped
 
 
-def _anneal(run: Run, anchor: int | None) -> StopReason:
-    from optplan.ordering._kernels.search import search as advance
-    from optplan.ordering._kernels.tour import BEST, FINISHED, ITERATION
+def _part(run: Run, share: float) -> Run:
+    """A share of what is left of the limits."""
+    limit = run.rule.iterations
+    return run.within(
+        share * run.clock.remaining, None if limit is None else math.ceil(share * max(0, limit - run.iterations))
+    )
 
+
+def _anneal(run: Run, anchor: int | None) -> StopReason:
+    """Anneal from one path; or shortly from one and from about its reverse, and then from the better."""
+    from optplan.ordering._kernels.tour import MIRROR, ORDER
+
+    given = run.start is not None
     start, stopped = _start(run)
     if start is None:
         return stopped
-    if anchor is not None:
-        start = np.roll(start, -int(np.flatnonzero(run.problem.cluster[start] == anchor)[0]))
+    start = _from_anchor(run, start, anchor)
     graph = circular_graph(run.problem, anchor, run.stop)
+    if not given and branchable(graph):
+        start, optimal = _branched(run, graph, anchor, start)
+        if optimal:
+            return run.stop() or StopReason.FINISHED
+    limited = run.rule.iterations is not None or math.isfinite(run.rule.seconds)
+    if given or not limited or not (graph.flags[MIRROR] and graph.flags[ORDER]):
+        return _descend(run, graph, anchor, start)
+    # costs hardly tell the two directions apart, and no small change turns a path under precedence
+    for way in (start, _turned(run.problem, start, anchor)):
+        part = _part(run, PILOT)
+        stopped = _descend(part, graph, anchor, way)
+        run.adopt(part)
+        if stopped in (StopReason.CANCELLED, StopReason.TARGET):
+            return stopped
+    part = _part(run, 1.0)
+    stopped = _descend(part, graph, anchor, _from_anchor(run, run.nodes, anchor) if len(run.nodes) else start)
+    run.adopt(part)
+    return stopped
+
+
+def _from_anchor(run: Run, path: IntArray, anchor: int | None) -> IntArray:
+    """The path, rotated to begin with the anchor."""
+    if anchor is None:
+        return path
+    return np.roll(path, -int(np.flatnonzero(run.problem.cluster[path] == anchor)[0]))
+
+
+def _turned(problem: OrderingProblem, path: IntArray, anchor: int | None) -> IntArray:
+    """The path backwards, as far as precedence lets it be; the anchor stays the first."""
+    clusters = problem.cluster[path]
+    rank = np.empty(len(path), dtype=np.int64)
+    rank[clusters] = np.arange(len(path))[::-1]
+    if anchor is not None:
+        rank[anchor] = -1
+    pairs = problem.precedence if anchor is None else problem.precedence[(problem.precedence != anchor).all(axis=1)]
+    waiting = np.bincount(pairs[:, 1], minlength=len(path))
+    after = grouped(pairs[:, 0], pairs[:, 1], len(path))
+    ready = [(int(rank[c]), c) for c in np.flatnonzero(waiting == 0).tolist()]
+    heapq.heapify(ready)
+    order = []
+    while ready:
+        _, c = heapq.heappop(ready)
+        order.append(c)
+        for d in after[after[c] : after[c + 1]].tolist():
+            waiting[d] -= 1
+            if not waiting[d]:
+                heapq.heappush(ready, (int(rank[d]), d))
+    node = np.empty(len(path), dtype=np.int64)
+    node[clusters] = partners(problem)[path]
+    turned: IntArray = node[order]
+    return turned
+
+
+def _descend(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> StopReason:
+    """Anneal from this path, while the limits last."""
+    from optplan.ordering._kernels.search import search as advance
+    from optplan.ordering._kernels.tour import BEST, FINISHED, ITERATION
+
     state = _state(graph, run.problem.cluster[start], start, run.seed)
     limit = run.rule.iterations
     timed = limit is None and math.isfinite(run.rule.seconds)
@@ -109,6 +181,20 @@ def _anneal(run: Run, anchor: int | None) -> StopReason:
         # how long a slice takes changes only when the rules are looked at, not what is found
         spent = max(time.perf_counter() - began, 1e-6)
         budget = int(budget * min(2.0, max(0.5, SLICE / spent)))
+
+
+def _branched(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> tuple[IntArray, bool]:
+    """The better of the given path and that from assignments, and whether it is optimal."""
+    rule = run.rule
+    timed = rule.iterations is None and math.isfinite(rule.seconds)
+    looks = math.inf if timed else BRANCHING * LOOKS * (rule.iterations or LEAST + EACH * run.problem.clusters)
+    until = run.clock.elapsed + BRANCHING * run.clock.remaining if timed else math.inf
+    depot = len(graph.first) - 2
+    first = np.append(depot, start) if anchor is None else start
+    tour, optimal = branched(graph, first, lambda: run.stop() or run.clock.elapsed > until, looks)
+    path = tour[1:] if anchor is None else tour
+    run.offer(path)
+    return path, optimal
 
 
 def _start(run: Run) -> tuple[IntArray | None, StopReason]:
@@ -141,7 +227,7 @@ def _state(graph: Graph, clusters: IntArray, nodes: IntArray, seed: int) -> Stat
     count = np.zeros(9, dtype=np.int64)
     count[ACTIVE] = count[QUEUE] = size
     cost = float(cost_of(graph, rows))
-    mean = max(abs(cost) / size, 1e-300)
+    mean = max(abs(cost + graph.offset) / size, 1e-300)
     return State(
         rows,
         rows.copy(),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from optplan.compiled import njit
+from optplan.ordering._kernels.borrow import borrowed
 from optplan.ordering._kernels.choice import choose_all, choose_around
 from optplan.ordering._kernels.exchange import bridge, improve
 from optplan.ordering._kernels.ruin import recreate, ruin
@@ -50,6 +51,13 @@ def search(
     simulated annealing. The temperature falls from `hot` to `cold` mean arcs of the best tour over `schedule`
     iterations; 0: it stays hot. The descent from the first tour is not counted.
     """
+    _search(borrowed(graph), borrowed(state), limit, target, budget, hot, cold, schedule)
+
+
+@njit(cache=True, nogil=True)
+def _search(
+    graph: Graph, state: State, limit: int, target: float, budget: int, hot: float, cold: float, schedule: int
+) -> None:
     count, lists, cost = state.counts, state.lists, state.cost
     size, choices = len(state.rows), graph.flags[CHOICES]
     count[WORK] = 0
@@ -70,7 +78,7 @@ def search(
             if whole and choose_all(graph, state):
                 continue
         temperature = hot * (cold / hot) ** (count[ITERATION] / schedule) if schedule > 0 else hot
-        temperature *= abs(cost[BEST]) / size
+        temperature *= abs(cost[BEST] + graph.offset) / size
         chance = (draw(state.random, 2**31) + 1.0) / 2**31
         if cost[NOW] < cost[BEFORE] - temperature * math.log(chance) or count[ITERATION] == 0:
             keep(state)
@@ -78,7 +86,7 @@ def search(
             take_back(state)
         count[CHANGED] = 0
         count[ACTIVE] = 0
-        if count[ITERATION] >= limit or cost[BEST] <= target:
+        if count[ITERATION] >= limit or cost[BEST] + graph.offset <= target:
             count[FINISHED] = 1
             return
         count[ITERATION] += 1

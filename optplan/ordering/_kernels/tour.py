@@ -20,10 +20,11 @@ from optplan.geometry._kernels.dubins import dubins_length
 class Graph(NamedTuple):
     """What is to be ordered.
 
-    data holds the arc costs (n, n), node costs included; or, when flags[DISTANT] is 1, where nodes are (n, 2 d + 4):
-    where a node is entered and left, its cost as the first and as the last node, its own cost, and 0 for a node, 1 for
-    one of the anchor, 2 for a depot. Then radius is that of Dubins paths, 0 for straight lines. Infinite costs are
-    large penalties: a search may pass through an impossible order on its way to a possible one.
+    data holds the arc costs (n, n), node costs included, less prices that add up to `offset` in every tour; or, when
+    flags[DISTANT] is 1, where nodes are (n, 2 d + 4): where a node is entered and left, its cost as the first and as
+    the last node, its own cost, and 0 for a node, 1 for one of the anchor, 2 for a depot. Then radius is that of Dubins
+    paths, 0 for straight lines. Infinite costs are large penalties: a search may pass through an impossible order on
+    its way to a possible one.
 
     first (m + 1,) nodes of each cluster; near (2, m, k) clusters that are good successors and good predecessors of
     each, best first, then -1; the direct predecessors of cluster c are before[before[c]:before[c + 1]], its
@@ -36,6 +37,7 @@ class Graph(NamedTuple):
     Few arrays, because numba counts references to each of them at each call.
     """
 
+    offset: float
     radius: float
     data: FloatArray
     first: IntArray
