@@ -124,7 +124,8 @@ def cheap_edges(
     first: IntArray,
     sets: IntArray,
     duals: FloatArray,
-    teeth: FloatArray,
+    first_tooth: IntArray,
+    teeth: IntArray,
     limit: float,
     low: int,
     high: int,
@@ -133,14 +134,16 @@ def cheap_edges(
 ) -> tuple[IntArray, FloatArray]:
     """Edges from the points low..high-1 to points of larger number with a reduced cost below `limit`.
 
-    Reduced cost: cost - price[u] - price[v] + the duals of all sets that hold both ends + teeth of the two clusters.
+    Reduced cost: cost - price[u] - price[v] + the duals of all sets that hold both ends, or one end where the two
+    clusters are one of the set's teeth.
 
     Parameters
     ----------
     matrix, places, depot, cluster : of the undirected form
     price : (n,) what a link at a point pays
     first, sets, duals : the sets that hold point v are sets[first[v]:first[v + 1]], in rising order; duals (k,) >= 0
-    teeth : (m, m) by clusters, >= 0, or (0, 0) for zeros
+    first_tooth, teeth : the teeth of set k are the pairs of clusters (a m + b, a < b, of m clusters)
+        teeth[first_tooth[k]:first_tooth[k + 1]]
     least : (n,) input and output: least reduced cost seen at each point
     most : stop after so many edges (the caller looks at fewer points)
 
@@ -150,6 +153,7 @@ def cheap_edges(
     """
     nodes = depot.shape[1]
     count = len(cluster)
+    clusters, none = cluster[-1] + 1, len(duals)
     edges = np.empty((most, 2), dtype=np.int64)
     reduced = np.empty(most)
     found = 0
@@ -167,19 +171,23 @@ def cheap_edges(
                     square += (places[u, d] - places[v, d]) ** 2
                 cost = np.sqrt(square)
             cost -= price[u] + price[v]
-            if len(teeth):
-                cost += teeth[cluster[u], cluster[v]]
             if cost >= limit and cost >= least[u] and cost >= least[v]:
                 continue
+            pair = min(cluster[u], cluster[v]) * clusters + max(cluster[u], cluster[v])
             a, b = first[u], first[v]
-            while a < first[u + 1] and b < first[v + 1]:
-                if sets[a] == sets[b]:
-                    cost += duals[sets[a]]
-                    a += 1
-                    b += 1
-                elif sets[a] < sets[b]:
-                    a += 1
+            while a < first[u + 1] or b < first[v + 1]:
+                one = sets[a] if a < first[u + 1] else none
+                other = sets[b] if b < first[v + 1] else none
+                k = min(one, other)
+                if one == other:
+                    cost += duals[k]
                 else:
+                    for t in range(first_tooth[k], first_tooth[k + 1]):
+                        if teeth[t] == pair:
+                            cost += duals[k]
+                if one == k:
+                    a += 1
+                if other == k:
                     b += 1
             least[u] = min(least[u], cost)
             least[v] = min(least[v], cost)

@@ -26,9 +26,12 @@ FRACTION = 0.02
 """Values closer to an integer are not branched on."""
 CANDIDATES = 12
 """Clusters, and edges, that look most undecided: among them is the branch."""
-STAGES = ((10, 4), (80, 1))
-"""Dual simplex steps of a look at a branch, and how many of the best stay: first all candidates, then the best."""
-"""Dual simplex steps of a look at a branch."""
+SHORT, LONG = 10, 80
+"""Dual simplex steps of a look at a branch: at those that have not been looked at often, and at the best."""
+KEPT = 4
+"""How many get a long look."""
+TRUSTED = 2
+"""After so many short looks at a cluster or an edge their mean is taken instead."""
 ROUNDS = 12
 WORTH = 0.02
 """Cutting goes on at a node while a round closes this part of its gap."""
@@ -51,6 +54,8 @@ class Branch(NamedTuple):
     edge: IntArray
 
 
+Looks = dict[tuple[int, int], list[float]]
+"""Scores of short looks, by what was looked at."""
 NONE = np.zeros(0, dtype=np.int64)
 NO_EDGE = np.zeros((0, 2), dtype=np.int64)
 
@@ -66,11 +71,12 @@ def branch_and_cut(root: Root, solution: Solution, found: Callable[[IntArray], N
     form = root.programme.form
     heap = [Node(root.bound, 0, pool, NO_EDGE)]
     number = 0
+    looks: Looks = {}
     while heap:
         root.raise_bound(min(heap[0].bound, root.cutoff))
         if root.closed():
             return True
-        node, branch = _explore(root, heapq.heappop(heap), found)
+        node, branch = _explore(root, heapq.heappop(heap), looks, found)
         if root.remaining <= 0:
             return False
         if branch is None:
@@ -116,7 +122,7 @@ def useful_edges(root: Root, solution: Solution) -> IntArray | None:
     return priced.edges[useful]
 
 
-def _explore(root: Root, node: Node, found: Callable[[IntArray], None]) -> tuple[Node, Branch | None]:
+def _explore(root: Root, node: Node, looks: Looks, found: Callable[[IntArray], None]) -> tuple[Node, Branch | None]:
     """Cut and price at a node, then choose a branch; None when nothing better is below it. The node, with its bound.
 
     Edges whose reduced cost exceeds the node's gap are in no better tour below it, and are taken away.
@@ -160,7 +166,7 @@ def _explore(root: Root, node: Node, found: Callable[[IntArray], None]) -> tuple
         rounds += 1
         pays = whole or (rounds <= ROUNDS and rise >= WORTH * (root.cost - node.bound))
         if not (sets or handles) or not pays:
-            return node, _choose(root, solution)
+            return node, _choose(root, solution, looks)
         programme.purge(AGE)
         programme.add_cuts(sets)
         programme.add_cuts(handles, teeth)
@@ -194,17 +200,29 @@ def _restrict(programme: CutProgramme, node: Node) -> None:
     now.set_bounds(changed, lower[changed], upper[changed])
 
 
-def _choose(root: Root, solution: Solution) -> Branch | None:
+def _choose(root: Root, solution: Solution, looks: Looks) -> Branch | None:
     """The branch that raises the objective most in both children, as far as some dual simplex steps tell."""
     form, edges = root.programme.form, root.programme.edges
     branches = _splits(form, edges, solution.primal) + _edges(edges, solution.primal)
-    for steps, kept in STAGES:
-        if len(branches) <= 1:
-            break
-        scores = [_score(root, solution, branch, steps) for branch in branches]
+    if len(branches) > 1:
+        scores = []
+        for branch in branches:
+            seen = looks.setdefault(_subject(form, branch), [])
+            if len(seen) < TRUSTED:
+                seen.append(_score(root, solution, branch, SHORT))
+            scores.append(sum(seen) / len(seen))
         order = np.argsort(scores, kind="stable")[::-1]
-        branches = [branches[k] for k in order[:kept].tolist()]
+        branches = [branches[k] for k in order[:KEPT].tolist()]
+    if len(branches) > 1:
+        branches = [max(branches, key=lambda branch: _score(root, solution, branch, LONG))]
     return branches[0] if branches else None
+
+
+def _subject(form: Undirected, branch: Branch) -> tuple[int, int]:
+    """What is branched on: a cluster (and -1), or the two ends of an edge."""
+    if len(branch.edge):
+        return int(branch.edge[0, 0]), int(branch.edge[0, 1])
+    return int(form.cluster[branch.points[0][0]]), -1
 
 
 def _score(root: Root, solution: Solution, branch: Branch, steps: int) -> float:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.ordering.cutting.undirected import Undirected
 from optplan.ordering.cutting.undirected_lp import pair_numbers
 
+Bools = npt.NDArray[np.bool_]
 USED = 1e-7
 """An edge with less than this is not there."""
 UNLIMITED = 2**31
@@ -16,7 +18,9 @@ BLOSSOMS = 40
 """Most blossoms at a time."""
 BLOSSOM_VIOLATION = 0.02
 BLOSSOM_CLUSTERS = 1500
-"""Most clusters for blossoms: their duals are kept by pairs of clusters (18 MB)."""
+"""Most clusters for blossoms: a cut tree takes a matrix (18 MB)."""
+HOPELESS = 1.6
+"""Handles that lack more (1 is enough) are not improved."""
 
 
 def violated_sets(form: Undirected, edges: IntArray, weights: FloatArray, most: int = UNLIMITED) -> list[IntArray]:
@@ -74,39 +78,80 @@ def _smallest(form: Undirected, sets: list[IntArray], most: int) -> list[IntArra
 
 
 def violated_blossoms(form: Undirected, edges: IntArray, weights: FloatArray) -> tuple[list[IntArray], list[IntArray]]:
-    """Handles (points of whole clusters) of violated blossoms, and their teeth (numbers of pairs of clusters).
+    """Handles (points) of violated blossoms, and their teeth (numbers of pairs of clusters).
 
     After Letchford, Reinelt and Theis ("Odd minimum cut sets and b-matchings revisited", 2008): handles are the least
-    cuts of a cut tree of the graph of clusters, in which a link weighs what it lacks to being used or not; teeth are
-    the links across that are rather used, one more or less where their number is even.
+    cuts of a cut tree of a graph in which a link weighs what it lacks to being used or not; teeth are the links across
+    that are rather used, one more or less where their number is even. There are two such graphs: of clusters, and of
+    points, whose handles split clusters. A local search makes the most of each handle, and of each point alone: edges
+    between the same two clusters are one link, which no graph of points knows.
     """
+    from optplan.ordering._kernels.blossoms import improve_handles
     from optplan.ordering._kernels.mincut import cut_tree_sets
 
     if form.clusters > BLOSSOM_CLUSTERS:
         return [], []
     used = weights > USED
-    pairs, place = np.unique(pair_numbers(form, *edges[used].T), return_inverse=True)
-    links = np.minimum(np.bincount(place.ravel(), weights[used]), 1.0)
+    points, ends, mate = _vertices(form, edges[used])
+    tails, heads = np.ascontiguousarray(ends.T)
+    amounts = weights[used]
+    pairs, bundle = np.unique(pair_numbers(form, *edges[used].T), return_inverse=True)
+    bundle = bundle.ravel()
+    links = np.bincount(bundle, amounts)
     a, b = np.divmod(pairs, form.clusters)
-    undecided = np.minimum(links, 1.0 - links)
-    rows = cut_tree_sets(form.clusters, a, b, undecided) == 1
-    found: dict[bytes, tuple[float, IntArray, IntArray]] = {}
-    for handle in rows:
-        crossing = np.flatnonzero(handle[a] != handle[b])
-        x = links[crossing]
-        # nothing across: the subtour cuts see to that
-        if not len(crossing) or undecided[crossing].sum() > 1.0 - BLOSSOM_VIOLATION:
+    clusters = cut_tree_sets(form.clusters, a, b, np.maximum(np.minimum(links, 1.0 - links), 0.0))
+    split = cut_tree_sets(len(points), tails, heads, np.maximum(np.minimum(amounts, 1.0 - amounts), 0.0))
+    cluster = form.cluster[points]
+    rows = np.concatenate([clusters[:, cluster], split, np.eye(len(points), dtype=np.int64)]).astype(np.uint8)
+    lacks = improve_handles(rows, tails, heads, amounts, bundle, mate, HOPELESS)
+    found: dict[bytes, tuple[IntArray, IntArray]] = {}
+    seen: set[bytes] = set()
+    in_support = np.bincount(cluster, minlength=form.clusters)
+    for k in np.argsort(lacks, kind="stable").tolist():
+        if lacks[k] > 1.0 - BLOSSOM_VIOLATION or len(found) == BLOSSOMS:
+            break
+        if rows[k].tobytes() in seen:
             continue
+        seen.add(rows[k].tobytes())
+        handle = rows[k] == 1
+        crossing = handle[tails] != handle[heads]
+        x = np.bincount(bundle[crossing], amounts[crossing], len(pairs))
         tooth = x > 0.5
-        if tooth.sum() % 2 == 0:
+        always = int((handle != handle[mate]).sum()) // 2
+        if (tooth.sum() + always) % 2 == 0:
+            # one more or less of those across
             flip = int(np.abs(x - 0.5).argmin())
             tooth[flip] = not tooth[flip]
-        lack = float(np.where(tooth, 1.0 - x, x).sum())
-        if tooth.sum() < 3 or lack > 1.0 - BLOSSOM_VIOLATION:
-            continue
-        if 2 * handle.sum() > form.clusters:
-            handle = ~handle
-        teeth = pairs[crossing[tooth]]
-        found[handle.tobytes() + teeth.tobytes()] = lack, np.flatnonzero(handle[form.cluster]), teeth
-    best = sorted(found.values(), key=lambda blossom: blossom[0])[:BLOSSOMS]
-    return [handle for _, handle, _ in best], [teeth for *_, teeth in best]
+        if tooth.sum() + always < 3:
+            continue  # a subtour cut says more
+        members = np.zeros(form.points, dtype=np.bool_)
+        members[points[handle]] = True
+        # points that are not in use go where all others of their cluster are
+        held = np.bincount(cluster[handle], minlength=form.clusters) == in_support
+        members |= (held & (in_support > 0))[form.cluster]
+        members |= members[form.mate] & ~_always(form)
+        if 2 * members.sum() > form.points:
+            members = ~members
+        teeth = pairs[tooth]
+        found.setdefault(members.tobytes() + teeth.tobytes(), (np.flatnonzero(members), teeth))
+    return [handle for handle, _ in found.values()], [teeth for _, teeth in found.values()]
+
+
+def _always(form: Undirected) -> Bools:
+    """(n,) which points are ends of a fixed edge that is their cluster's only option."""
+    single = form.mate == np.arange(form.points)
+    two: Bools = (np.bincount(form.cluster) == 2)[form.cluster] & ~single
+    return two
+
+
+def _vertices(form: Undirected, edges: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """Points (n,) in use, the edges (k, 2) between their numbers, and the number (n,) of the other end of each.
+
+    Both ends of a fixed edge are one vertex unless every tour uses it; other vertices are their own other ends.
+    """
+    everything = np.arange(form.points)
+    always = _always(form)
+    vertex = np.where(always, everything, np.minimum(everything, form.mate))
+    points, numbered = np.unique(np.concatenate([vertex[edges].ravel(), everything[always]]), return_inverse=True)
+    mate = np.searchsorted(points, np.where(always[points], form.mate[points], points))
+    return points, numbered.ravel()[: edges.size].reshape(edges.shape), mate

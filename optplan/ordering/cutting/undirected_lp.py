@@ -13,8 +13,9 @@ blossoms
 
     x(delta(S)) >= 1 - t + 2 x(teeth)
 
-for a set S of whole clusters and an odd number t of teeth, which are pairs of clusters in and outside of S: a tour
-crosses S an even number of times, and each tooth at most once.
+for any set S of points. A tooth is a pair of clusters, and x(teeth) counts the edges between them that cross S. S may
+split a stroke that has no option but its fixed edge, as a tour crosses S there for certain; t teeth and the strokes
+split are an odd number. A tour crosses S an even number of times, and each tooth at most once.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ PURGE = 20
 class Cut(NamedTuple):
     """Points `members` of S, those with h = 1/2 (`halves`), the right-hand side, and the teeth of a blossom.
 
-    teeth (t,) : pairs of clusters as numbers (`pair_numbers`); all edges between them have one more in the row
+    teeth (t,) : pairs of clusters as numbers (`pair_numbers`); edges between them that cross S have one more in the row
     """
 
     members: IntArray
@@ -53,14 +54,12 @@ class Cut(NamedTuple):
 class Dual(NamedTuple):
     """Duals as prices: an edge u, v costs `prices[u] + prices[v]` less, and `cuts[k]` more where S_k holds both ends.
 
-    prices (n,), cuts (k,) >= 0; teeth (m, m): what an edge between two clusters costs more because of blossoms, or
-    (0, 0) without blossoms; value: of the dual solution while no reduced cost is negative; size: of the numbers
-    that were summed up in it.
+    prices (n,), cuts (k,) >= 0, of blossoms also for edges of their teeth; value: of the dual solution while no
+    reduced cost is negative; size: of the numbers that were summed up in it.
     """
 
     prices: FloatArray
     cuts: FloatArray
-    teeth: FloatArray
     value: float
     size: float
 
@@ -103,7 +102,7 @@ class CutProgramme:
         return self.form.clusters + len(self._tied)
 
     def add_cuts(self, sets: list[IntArray], teeth: list[IntArray] | None = None) -> None:
-        """Add the cuts of these sets of points; with teeth (an odd number of pairs of clusters each), blossoms."""
+        """Add the cuts of these sets of points; with teeth (pairs of clusters, or none), blossoms."""
         if not sets:
             return
         u, v = self.edges[:, 0], self.edges[:, 1]
@@ -114,7 +113,7 @@ class CutProgramme:
             held = np.bincount(self.form.cluster[members], minlength=self.form.clusters) == self._sizes
             split = inside & ~held[self.form.cluster]
             # with teeth, x(delta(S)) + t >= 1 + 2 x(teeth) instead of x(delta(S)) >= 2
-            less = 1.0 if not len(pairs) else 0.5 * (1.0 - len(pairs))
+            less = 1.0 if teeth is None else 0.5 * (1.0 - len(pairs))
             forms = [
                 Cut(members, np.flatnonzero(split), held.sum() - less, pairs),
                 Cut(members, members, -less, pairs),
@@ -179,22 +178,15 @@ class CutProgramme:
         ends = solution.duals[: form.clusters]
         ties = solution.duals[form.clusters : self.fixed_rows]
         cuts = np.maximum(0.0, -solution.duals[self.fixed_rows :])
-        teeth = np.zeros((0, 0))
         prices = ends[form.cluster]
         prices[self._tied] += ties
         prices[form.mate[self._tied]] -= ties
         for k in np.flatnonzero(cuts).tolist():
             prices[self.cuts[k].halves] += 0.5 * cuts[k]
-            if len(self.cuts[k].teeth):
-                if not len(teeth):
-                    teeth = np.zeros((form.clusters, form.clusters))
-                a, b = np.divmod(self.cuts[k].teeth, form.clusters)
-                teeth[a, b] += cuts[k]
-                teeth[b, a] += cuts[k]
         right = np.array([cut.right for cut in self.cuts])
         value = 2.0 * float(ends.sum()) - float(cuts @ right)
         size = 2.0 * float(np.abs(prices).sum()) + float(cuts @ np.abs(right))
-        return Dual(prices, cuts, teeth, value, size)
+        return Dual(prices, cuts, value, size)
 
     def price(self, solution: Solution, limit: float, most: int) -> Priced:
         """Edges of the complete graph with a reduced cost below `limit` (at most `most`), and a bound.
@@ -212,6 +204,8 @@ class CutProgramme:
         which = np.repeat(np.array(active, dtype=np.int64), [len(self.cuts[k].members) for k in active])
         order = np.argsort(who, kind="stable")
         first = np.searchsorted(who[order], np.arange(form.points + 1))
+        first_tooth = np.cumsum([0, *(len(cut.teeth) for cut in self.cuts)])
+        teeth = np.concatenate([nothing, *(cut.teeth for cut in self.cuts)])
         least = np.full(form.points, math.inf)
         prices = dual.prices - 0.5 * form.node_costs
         edges, reduced = cheap_edges(
@@ -223,7 +217,8 @@ class CutProgramme:
             first,
             which[order],
             dual.cuts,
-            dual.teeth,
+            first_tooth,
+            teeth,
             limit,
             0,
             form.points,
@@ -238,15 +233,17 @@ class CutProgramme:
         """(k,) reduced costs of edges (k, 2); those from `exact_below` on may be too low, but not below it."""
         u, v = edges.T
         reduced: FloatArray = self.form.edge_costs(u, v) - dual.prices[u] - dual.prices[v]
-        if len(dual.teeth):
-            reduced += dual.teeth[self.form.cluster[u], self.form.cluster[v]]
         low = np.flatnonzero(reduced < exact_below)
         u, v = u[low], v[low]
+        pairs = pair_numbers(self.form, u, v)
         inside = np.zeros(self.form.points, dtype=np.bool_)
         for k in np.flatnonzero(dual.cuts).tolist():
             inside[:] = False
             inside[self.cuts[k].members] = True
-            reduced[low] += dual.cuts[k] * (inside[u] & inside[v])
+            counted = inside[u] & inside[v]
+            if len(self.cuts[k].teeth):
+                counted |= (inside[u] != inside[v]) & np.isin(pairs, self.cuts[k].teeth)
+            reduced[low] += dual.cuts[k] * counted
         return reduced
 
     def _entries(self, cut: Cut, u: IntArray, v: IntArray) -> FloatArray:
@@ -256,7 +253,7 @@ class CutProgramme:
         half[cut.halves] = 0.5
         entries: FloatArray = inside[u] * inside[v] - half[u] - half[v]
         if len(cut.teeth):
-            entries += np.isin(pair_numbers(self.form, u, v), cut.teeth)
+            entries += (inside[u] != inside[v]) & np.isin(pair_numbers(self.form, u, v), cut.teeth)
         return entries
 
     def _fixed_entries(self, edges: IntArray) -> Sparse:

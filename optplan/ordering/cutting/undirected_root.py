@@ -34,7 +34,7 @@ STALL = 0.002
 """The loop ends when so many rounds close less than this part of the gap."""
 MIX = 0.5
 """Cuts are looked for half-way between the point and the known tour, where those found are deeper."""
-MANY_CLUSTERS, COVER = 200, 10
+MANY_CLUSTERS, COVER = 200, 4
 """Of more clusters, each takes part in so many of a round's subtour cuts: the programme stays sparse and fast, in more
 rounds than there is time for anyway."""
 ROUNDING = 1e-7
