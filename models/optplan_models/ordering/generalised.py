@@ -7,6 +7,10 @@
     x(delta(S)) + (y of fixed edges that S cuts) >= 2    every set S of points that holds a whole cluster and
                                                          leaves a whole cluster outside
 
+    x(delta(S)) >= 1 - t + 2 x(teeth)    blossoms: every set S and t pairs of clusters (teeth), where t and the number
+                                         of fixed edges that S cuts, each its cluster's only option, add up to an odd
+                                         number; S cuts no other fixed edge
+
 after Fischetti, Salazar Gonzalez and Toth ("A branch-and-cut algorithm for the symmetric generalized traveling
 salesman problem", 1997); a path between depots is a tour with a cluster for the depot. The cuts are exponentially many
 and given explicitly. With all of them, x <= 1 follows.
@@ -76,3 +80,19 @@ def add_cut(model: Any, mate: Ints, points: Ints) -> None:
     crossing = [model.x[u, v] for u, v in model.x if (u in inside) != (v in inside)]
     fixed = [model.y[v] for v in model.y if (v in inside) != (int(mate[v]) in inside)]
     model.cut.add(pyo.quicksum(crossing) + pyo.quicksum(fixed) >= 2)
+
+
+def add_blossom(model: Any, cluster: Ints, points: Ints, teeth: Ints) -> None:
+    """Add the blossom of a handle, points (., ), and its teeth (t, 2), pairs of clusters: see above.
+
+    x(teeth) counts the edges between the two clusters of a tooth that have one end in the handle.
+    """
+    inside = set(points.tolist())
+    pairs = {(min(a, b), max(a, b)) for a, b in teeth.tolist()}
+    crossing = [e for e in model.x if (e[0] in inside) != (e[1] in inside)]
+    terms = []
+    for u, v in crossing:
+        a, b = sorted((int(cluster[u]), int(cluster[v])))
+        terms.append((-1 if (a, b) in pairs else 1) * model.x[u, v])
+    if terms:  # else it says 0 >= 1 - t
+        model.cut.add(pyo.quicksum(terms) >= 1 - len(pairs))
