@@ -16,7 +16,8 @@ import numpy as np
 
 from benchmarks.ordering import DATA, Row
 from optplan.domain.arrays import FloatArray
-from optplan.geometry.cc import Family, cc_lengths, cc_matrix
+from optplan.geometry.cc import Family, cc_lengths, cc_matrix, cc_path
+from optplan.geometry.curves import Curve
 from optplan.geometry.dubins import dubins_lengths
 
 LISTS = DATA / "connectors"
@@ -107,16 +108,68 @@ def lengths() -> Iterator[Row]:
         yield Row(f"longer than {name}, queries", float((ratio > 1 + 1e-9).sum()), 0, "", worst)
 
 
+def optimised() -> Iterator[Row]:
+    """Connectors optimised from the shortest CC path, at N = 40."""
+    from optplan.connectors.optimised import optimised_connector
+    from optplan_models.connector import optimise
+
+    if not LISTS.is_dir():
+        return
+    with (LISTS / "cc00.csv").open() as stream:
+        listed_rows = {row["id"]: row for row in csv.DictReader(stream)}
+    with (LISTS / "best.csv").open() as stream:
+        best = list(csv.DictReader(stream))
+    chosen = [row for row in best if 1 <= float(row["kappa_max"]) ** 2 / float(row["sigma_max"]) <= 2]
+    seconds, missed, failed, worse = [], [], 0, 0
+    for row in chosen:
+        kappa, sigma = float(row["kappa_max"]), float(row["sigma_max"])
+        query = [float(listed_rows[row["id"]][key]) for key in ("x0", "y0", "th0", "x1", "y1", "th1")]
+        start, end = np.array([*query[:3], 0.0]), np.array([*query[3:], 0.0])
+        known = cc_path(start, end, kappa, sigma)
+        pieces = known.curvatures, known.sharpnesses, known.lengths
+        turned = start[2] + float((known.lengths * (known.curvatures + known.sharpnesses * known.lengths / 2)).sum())
+        goal = np.array([*end[:2], end[2] + 2 * np.pi * round((turned - end[2]) / (2 * np.pi)), 0.0])
+        begun = time.process_time()
+        found = optimise(start, goal, kappa, sigma, pieces)
+        seconds.append(time.process_time() - begun)
+        if not found.converged:
+            found = optimise(start, goal, kappa, sigma, pieces, solver="ipopt")
+        failed += not found.converged
+        missed.append(found.missed if found.converged else 0.0)
+        curve = optimised_connector(start, end, kappa, sigma).curve
+        worse += curve is None or curve.total > 1.002 * float(row["best_known_len"])
+    yield Row("optimised, a solve, median", 1e3 * statistics.median(seconds), 5.0, "ms", "fatrop, 40 intervals")
+    yield Row("optimised, not feasible from CC starts", 100 * failed / len(chosen), 0.0, "%")
+    yield Row("optimised, 0.2 % above the best known, 1 <= q <= 2", 100 * worse / len(chosen), 2.0, "%")
+    yield Row("optimised, end missed by at most", max(missed), 1e-6, "m")
+
+
+def ends(count: int = 3000) -> Iterator[Row]:
+    """How far paths end from where they should, and how many of many queries fail."""
+    starts, goals = queries(count, 4), queries(count, 5)
+    starts[:, 3], goals[:, 3] = (np.random.default_rng(k).uniform(-KAPPA, KAPPA, count) for k in (6, 7))
+    missed = 0.0
+    for start, end in zip(starts, goals, strict=True):
+        made = cc_path(start, end, KAPPA, 1.0)
+        reached = Curve(start[:3], made.curvatures, made.sharpnesses, made.lengths).end
+        turn = (reached[2] - end[2] + np.pi) % (2 * np.pi) - np.pi
+        missed = max(missed, float(np.hypot(*(reached[:2] - end[:2]))), abs(float(turn)))
+    yield Row("end of paths missed by at most", missed, 1e-9, "m", "and rad; any end curvature")
+    many, others = queries(100_000, 8), queries(100_000, 9)
+    bad = int((~np.isfinite(cc_lengths(many, others, KAPPA, 1.0))).sum())
+    yield Row("queries of 100 000 that fail", float(bad), 0.0, "")
+
+
 def main() -> int:
     """Print the table; 0 when every target is met."""
     met = True
-    for part in (lengths(), speeds(), matrices()):
+    for part in (lengths(), ends(), speeds(), matrices(), optimised()):
         for row in part:
             good = row.measured <= row.target
             met = met and good
             verdict = "met" if good else "NOT MET"
             print(
-                f"{row.what:<44}{row.measured:>11.4g} {row.unit:<3}{row.target:>9.3g}  {verdict}  {row.remark}",
+                f"{row.what:<52}{row.measured:>11.4g} {row.unit:<3}{row.target:>9.3g}  {verdict}  {row.remark}",
                 flush=True,
             )
     return 0 if met else 1

@@ -106,7 +106,7 @@ def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> P
         raise InputError("the plan has no strokes yet; run the stage cover first")
     job, robot, options = before.job, before.robot, before.options
     ways = traversals(before.cover.strokes, robot, options, before.cover.links)
-    problem = ordering_problem(ways, before.cover, robot, options)
+    problem = ordering_problem(ways, before.cover, robot, options, progress)
     order = options.order
     rule = stop or StopRule(seconds=order.seconds or math.inf, iterations=order.iterations)
     # what is to be avoided takes the other half of the time

@@ -12,6 +12,7 @@ from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.errors import InputError, LimitError
 from optplan.domain.options import Options
 from optplan.domain.ordering import ArcCosts, DubinsCosts, EuclidCosts, MatrixCosts, OrderingProblem
+from optplan.domain.progress import Progress, ProgressCallback, silent
 from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
 from optplan.domain.stroke import Stroke, Traversals
@@ -129,7 +130,13 @@ def visits_of_tour(tour: Sequence[int], strokes: Sequence[Stroke]) -> list[tuple
     return visits
 
 
-def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Options | None = None) -> OrderingProblem:
+def ordering_problem(
+    ways: Traversals,
+    cover: Cover,
+    robot: Robot,
+    options: Options | None = None,
+    progress: ProgressCallback = silent,
+) -> OrderingProblem:
     """The problem of visiting every stroke once: nodes are the rows of `ways`, costs are metres between strokes.
 
     Parameters
@@ -138,6 +145,7 @@ def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Opti
     cover : gives precedence and, unless the options name one, the start point
     robot, options : give the metric: straight lines, or Dubins or continuous-curvature paths within the limits at
         transit speed
+    progress : told how many connectors have been measured, where that takes time
 
     Raises
     ------
@@ -156,7 +164,12 @@ def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Opti
                 "offer fewer entries, or take 'dubins'"
             )
         flat = [0, 1, 3, 4]
-        costs = MatrixCosts(cc_matrix(ways.exit[:, flat], ways.entry[:, flat], 1 / family.radius, family.sharpness))
+
+        def told(share: float) -> None:
+            progress(Progress("order", share, message="lengths of connectors"))
+
+        states = ways.exit[:, flat], ways.entry[:, flat]
+        costs = MatrixCosts(cc_matrix(*states, 1 / family.radius, family.sharpness, told=told))
     elif family.metric == "dubins":
         from optplan.geometry.dubins import dubins_lengths
 

@@ -72,7 +72,7 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
             areas += made
         if len(strokes) > MAX_STROKES:
             raise LimitError(f"there are more than {MAX_STROKES} strokes; widen the fill spacing or split it", job.name)
-    notes += tight_notes(strokes, robot, options)
+    notes += tight_notes(strokes, robot, options, progress)
     inner = inner_before_outer(strokes) if options.cover.inner_first else []
     strokes, source = split_at_stops(strokes, robot, options)
     if not strokes:

@@ -12,6 +12,7 @@ import numpy as np
 from optplan.domain.arrays import IntArray
 from optplan.domain.job import Note
 from optplan.domain.options import Options, PageOptions
+from optplan.domain.progress import Progress, ProgressCallback, silent
 from optplan.domain.robot import CurvatureLimits, Robot, Tool
 from optplan.domain.stroke import Stroke
 from optplan.geometry.rounding import inner_vertices, wrapped
@@ -77,11 +78,17 @@ def split_at_stops(strokes: list[Stroke], robot: Robot, options: Options) -> tup
     return [part for own in parts for part in own], [k for k, own in enumerate(parts) for _ in own]
 
 
-def tight_notes(strokes: list[Stroke], robot: Robot, options: Options) -> list[Note]:
-    """A notice for each element with curves too tight to be driven without stopping, or splitting, in between."""
+def tight_notes(
+    strokes: list[Stroke], robot: Robot, options: Options, progress: ProgressCallback = silent
+) -> list[Note]:
+    """A notice for each element with curves too tight to be driven without stopping, or splitting, in between.
+
+    `progress` is told how many strokes have been made curves, which takes a while where there are many.
+    """
     limits, corner = work_limits(robot, options), options.connect.corner
     counts: dict[str, int] = {}
-    for stroke in strokes:
+    for done, stroke in enumerate(strokes):
+        progress(Progress("cover", done / len(strokes), message="curves that the robot can follow"))
         stops = stops_of(stroke, robot, options)
         ring = np.concatenate([stroke.points[-1:], stroke.closed_points])[:, :2]
         steps = np.diff(ring, axis=0)

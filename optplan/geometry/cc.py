@@ -7,6 +7,7 @@ sigma_max per metre. `docs/maths/connectors.md` describes the words and how they
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Literal, NamedTuple
 
@@ -124,8 +125,12 @@ def cc_matrix(
     sharpness: float,
     family: Family = "full",
     threads: int | None = None,
+    told: Callable[[float], None] | None = None,
 ) -> FloatArray:
-    """Lengths (n, m) m from every exit (n, 4) to every entry (m, 4), by threads. Raises like `cc_path`."""
+    """Lengths (n, m) m from every exit (n, 4) to every entry (m, 4), by threads. Raises like `cc_path`.
+
+    `told` is called with the share that is done; what it raises ends the work.
+    """
     from optplan.geometry._kernels import cc as kernels
 
     full = _checked(exits, entries, curvature, sharpness, family, 2)
@@ -140,8 +145,9 @@ def cc_matrix(
 
     pool = ThreadPoolExecutor(threads)
     try:
-        for _ in pool.map(fill, range(0, len(first), rows)):
-            pass
+        for done, _ in enumerate(pool.map(fill, range(0, len(first), rows)), start=1):
+            if told is not None:
+                told(min(1.0, done * rows / len(first)))
     finally:
         # after a cancel, slices that have not begun are dropped
         pool.shutdown(wait=True, cancel_futures=True)

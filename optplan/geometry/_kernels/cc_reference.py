@@ -126,6 +126,12 @@ def turn_length(delta: float, turns: FloatArray) -> float:
     return regular
 
 
+@njit("float64(float64, float64[::1])", cache=True, nogil=True, error_model="numpy", inline="always")
+def _least_length(delta: float, turns: FloatArray) -> float:
+    """No turn from straight to straight within the limits is shorter: two clothoids of the limit's sharpness."""
+    return 2.0 * (1.0 - 1e-9) * math.sqrt(max(delta, 0.0) * turns[4])
+
+
 @njit(
     "UniTuple(float64, 7)(float64, float64, float64, float64[::1])",
     cache=True,
@@ -151,7 +157,7 @@ def reference_word(
         # from centre to centre; the last circle is the first one's image seen backwards
         gx = x - c * cx - d2 * sn * cy - cx
         gy = y - sn * cx + d2 * c * cy - d1 * cy
-        apart = math.hypot(gx, gy)
+        apart = math.sqrt(gx * gx + gy * gy)
         if i < 2:
             if apart <= 10.0 * EXACT * size:
                 delta = _wrapped(d1 * theta)
@@ -159,46 +165,49 @@ def reference_word(
                 if length < best:
                     best, word, side1, side2, first, middle, last = length, float(T), d1, d2, delta, 0.0, 0.0
                 continue
-            angle = math.atan2(gy, gx)
-            if apart >= 2.0 * cx:
-                delta1 = _wrapped(d1 * angle)
-                delta2 = _wrapped(d2 * (theta - angle))
-                line = apart - 2.0 * cx
-                length = line + turn_length(delta1, turns) + turn_length(delta2, turns)
-                if length < best:
-                    best, word, side1, side2, first, middle, last = length, float(TST), d1, d2, delta1, line, delta2
-            if apart <= 4.0 * radius:
-                bend = math.acos(apart / (4.0 * radius))
-                for way in range(2):
-                    off = bend if way == 0 else -bend
-                    # a turn leaves its circle at polar angle phi with heading phi + d (pi / 2 - mu)
-                    psi1 = angle + off + d1 * (0.5 * math.pi - mu)
-                    psi2 = angle - off - d1 * (0.5 * math.pi - mu)
-                    delta1 = _wrapped(d1 * psi1)
-                    delta2 = _wrapped(d1 * (psi1 - psi2))
-                    delta3 = _wrapped(d1 * (theta - psi2))
-                    length = turn_length(delta1, turns) + turn_length(delta2, turns) + turn_length(delta3, turns)
-                    if length < best:
-                        best, word, side1, side2, first, middle, last = (
-                            length,
-                            float(TTT),
-                            d1,
-                            d2,
-                            delta1,
-                            delta2,
-                            delta3,
-                        )
+            line = apart - 2.0 * cx
+            if line < 0.0 or line >= best:
+                continue
+            psi = math.atan2(gy, gx)
         elif apart >= 2.0 * radius * (1.0 - 1e-12):
             # inner tangent; circles that touch are the word TT
-            inner = math.asin(min(2.0 * cy / apart, 1.0))
-            psi = math.atan2(gy, gx) + d1 * inner
             line = math.sqrt(max(apart * apart - 4.0 * cy * cy, 0.0)) - 2.0 * cx
-            delta1 = _wrapped(d1 * psi)
-            delta2 = _wrapped(d2 * (theta - psi))
-            length = line + turn_length(delta1, turns) + turn_length(delta2, turns)
+            if line >= best:
+                continue
+            psi = math.atan2(gy, gx) + d1 * math.asin(min(2.0 * cy / apart, 1.0))
+        else:
+            continue
+        delta1 = _wrapped(d1 * psi)
+        delta2 = _wrapped(d2 * (theta - psi))
+        if line + _least_length(delta1, turns) + _least_length(delta2, turns) >= best:
+            continue
+        length = line + turn_length(delta1, turns) + turn_length(delta2, turns)
+        if length < best:
+            kind = float(TT) if i >= 2 and line <= EXACT * size else float(TST)
+            best, word, side1, side2, first, middle, last = length, kind, d1, d2, delta1, line, delta2
+    for i in range(2):
+        d1 = 1.0 if i == 0 else -1.0
+        gx = x - c * cx - d1 * sn * cy - cx
+        gy = y - sn * cx + d1 * c * cy - d1 * cy
+        apart = math.sqrt(gx * gx + gy * gy)
+        if apart > 4.0 * radius or apart <= 10.0 * EXACT * size:
+            continue
+        angle = math.atan2(gy, gx)
+        bend = math.acos(apart / (4.0 * radius))
+        for way in range(2):
+            off = bend if way == 0 else -bend
+            # a turn leaves its circle at polar angle phi with heading phi + d (pi / 2 - mu)
+            psi1 = angle + off + d1 * (0.5 * math.pi - mu)
+            psi2 = angle - off - d1 * (0.5 * math.pi - mu)
+            delta1 = _wrapped(d1 * psi1)
+            delta2 = _wrapped(d1 * (psi1 - psi2))
+            delta3 = _wrapped(d1 * (theta - psi2))
+            least = _least_length(delta1, turns) + _least_length(delta2, turns) + _least_length(delta3, turns)
+            if least >= best:
+                continue
+            length = turn_length(delta1, turns) + turn_length(delta2, turns) + turn_length(delta3, turns)
             if length < best:
-                kind = float(TT) if line <= EXACT * size else float(TST)
-                best, word, side1, side2, first, middle, last = length, kind, d1, d2, delta1, line, delta2
+                best, word, side1, side2, first, middle, last = length, float(TTT), d1, d1, delta1, delta2, delta3
     return best, word, side1, side2, first, middle, last
 
 

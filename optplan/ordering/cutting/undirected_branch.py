@@ -30,7 +30,7 @@ SHORT, LONG = 10, 80
 """Dual simplex steps of a look at a branch: at those that have not been looked at often, and at the best."""
 KEPT = 4
 """How many get a long look."""
-TRUSTED = 2
+TRUSTED = 3
 """After so many short looks at a cluster or an edge their mean is taken instead."""
 ROUNDS = 12
 WORTH = 0.02
