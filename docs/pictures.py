@@ -1,4 +1,4 @@
-"""Make the pictures of the documentation: `.venv/bin/python -m docs.pictures`, or with `convergence` only that one."""
+"""Make the pictures of the documentation: `.venv/bin/python -m docs.pictures`, or only those that are named."""
 
 from __future__ import annotations
 
@@ -26,7 +26,41 @@ def convergence() -> None:
     op.draw_convergence(runs, FOLDER / "convergence.png", title=title, overwrite=True, dpi=100)
 
 
-def main() -> None:
+def square() -> None:
+    """Four sides of 1 m one after the other, for a robot that can neither turn on the spot nor jerk its wheels."""
+    import matplotlib as mpl
+    import numpy as np
+
+    mpl.use("agg")
+    from matplotlib import pyplot as plt
+
+    from optplan.geometry.cc import cc_path
+    from optplan.geometry.curves import Curve, evaluate
+
+    kappa, sigma = 1.125, 0.5
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], dtype=np.float64)
+    steps = np.diff(corners, axis=0)
+    headings = np.arctan2(steps[:, 1], steps[:, 0])
+    sheet, cells = plt.subplots(1, 2, figsize=(10, 5.2), sharex=True, sharey=True)
+    families = (("published family", "reference"), ("all words", "full"))
+    for cell, (title, family) in zip(cells, families, strict=True):
+        total = 4.0
+        for k in range(4):
+            start = np.array([*corners[k + 1], headings[k], 0.0])
+            end = np.array([*corners[k + 1], headings[(k + 1) % 4], 0.0])
+            made = cc_path(start, end, kappa, sigma, "full" if family == "full" else "reference")
+            curve = Curve(start[:3], made.curvatures, made.sharpnesses, made.lengths)
+            total += curve.total
+            cell.plot(*evaluate(curve, np.linspace(0, curve.total, 600)).points.T, color="#1f6f8b", lw=1.2)
+        cell.plot(*corners.T, color="#8a6a3f", lw=5)
+        cell.set_aspect("equal")
+        cell.set_title(f"{title}: {total:.1f} m")
+        cell.axis("off")
+    sheet.tight_layout()
+    sheet.savefig(FOLDER / "square.png", dpi=80)
+
+
+def drawings() -> None:
     """Plan the shipped drawings and draw them."""
     import matplotlib as mpl
 
@@ -51,7 +85,8 @@ def main() -> None:
     op.draw(plotter, FOLDER / "plotter.png", overwrite=True, dpi=80)
 
 
+PICTURES = {"convergence": convergence, "square": square, "drawings": drawings}
+
 if __name__ == "__main__":
-    convergence()
-    if sys.argv[1:] != ["convergence"]:
-        main()
+    for picture in sys.argv[1:] or PICTURES:
+        PICTURES[picture]()
