@@ -90,12 +90,12 @@ def with_detours(
         first = nodes if math.isfinite(problem.cost_of(nodes)) else None
         answer = solve(problem, options.order.solver, limits, options.order.seed, start=first)
         if not math.isfinite(answer.cost):
-            text = "forbidden areas leave no order of the strokes that was found"
+            text = "no order of the strokes was found that keeps out of forbidden areas"
             return replace(found, message=f"{found.message}; {text}".removeprefix("; ")), problem
         current = answer
     cost = problem.cost_of(current.nodes)
-    text = f"{longer} connectors were measured around forbidden areas"
-    text += f", {blocked} of them have no way" if blocked else ""
+    text = f"connectors that meet forbidden areas: {longer} were tried"
+    text += f", {blocked} of them have no way around and are not used" if blocked else ""
     message = f"{current.message}; {text}".removeprefix("; ")
     bound = min(current.bound, cost)
     return replace(current, cost=cost, bound=bound, message=message), problem
