@@ -155,6 +155,7 @@ def ordering_problem(ways: Traversals, cover: Cover, robot: Robot, options: Opti
                 f"{len(ways)} ways of driving the strokes; the metric 'cc' takes at most {MOST_CURVED}: "
                 "offer fewer entries, or take 'dubins'"
             )
+        _refuse_tight_ends(cover, ways, family.radius)
         flat = [0, 1, 3, 4]
         costs = MatrixCosts(cc_matrix(ways.exit[:, flat], ways.entry[:, flat], 1 / family.radius, family.sharpness))
     elif family.metric == "dubins":
@@ -206,3 +207,14 @@ def _start(cover: Cover, options: Options) -> tuple[float, float] | None:
         size = f"{canvas.width:g} x {canvas.height:g} m"
         raise InputError(f"the start ({start[0]:g}, {start[1]:g}) lies outside the canvas of {size}")
     return start
+
+
+def _refuse_tight_ends(cover: Cover, ways: Traversals, radius: float) -> None:
+    """Refuse strokes that are entered or left in a bend that the robot cannot follow at transit speed."""
+    bend = np.maximum(np.abs(ways.entry[:, 4]), np.abs(ways.exit[:, 4]))
+    way = int(np.argmax(bend)) if len(bend) else 0
+    if len(bend) and bend[way] * radius > 1 + 1e-6:
+        raise InputError(
+            f"{cover.strokes[ways.stroke[way]].id}: is entered in a bend of {1 / bend[way]:.3g} m radius; connectors "
+            f"need {radius:.3g} m at transit speed; expected a lower transit speed, or the metric 'dubins'"
+        )

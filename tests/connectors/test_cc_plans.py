@@ -18,6 +18,13 @@ PAGE = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20">
 CC = Options(order=OrderOptions(metric="cc"))
 
 
+def test_a_ring_tighter_than_connectors_is_refused_by_name() -> None:
+    ring = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><path d="M2 2H9" fill="none" stroke="#000"/>
+    <circle id="ring" cx="12" cy="12" r="0.12" fill="none" stroke="#000"/></svg>"""
+    with pytest.raises(InputError, match=r"ring: is entered in a bend of .* lower transit speed"):
+        op.plan(op.read(ring), "line-marker", CC)
+
+
 @pytest.mark.parametrize("start", [None, (5.0, 5.0)])
 def test_connectors_are_g2_within_limits_and_cost_what_was_said(start: tuple[float, float] | None) -> None:
     plan = op.plan(op.read(PAGE), "line-marker", Options(order=OrderOptions(metric="cc", start=start)))
