@@ -58,6 +58,7 @@ def with_detours(
         return replace(found, message=f"{found.message}; {more}".removeprefix("; ")), problem
     costs, begin = dense_costs(problem).copy(), problem.start_costs.copy()
     start, family = options.order.start or cover.start, family_of(robot, options)
+    exits, entries = family.eased(ways.exit), family.eased(ways.entry)
     measured: set[tuple[int, int]] = set()
     current, longer, blocked = found, 0, 0
     for rounds in range(ROUNDS):
@@ -74,8 +75,8 @@ def with_detours(
                 here = np.array([*(start or (0.0, 0.0)), heading, 0.0])
                 before = float(begin[head])
             else:
-                here, before = ways.exit[tail, [0, 1, 3, 4]], float(costs[tail, head])
-            length = _length(roads, here, ways.entry[head, [0, 1, 3, 4]])
+                here, before = exits[tail, [0, 1, 3, 4]], float(costs[tail, head])
+            length = _length(roads, here, entries[head, [0, 1, 3, 4]])
             if length > before * (1 + 1e-9):
                 changed, longer, blocked = True, longer + 1, blocked + math.isinf(length)
                 if tail < 0:
@@ -90,12 +91,12 @@ def with_detours(
         first = nodes if math.isfinite(problem.cost_of(nodes)) else None
         answer = solve(problem, options.order.solver, limits, options.order.seed, start=first)
         if not math.isfinite(answer.cost):
-            text = "forbidden areas leave no order of the strokes that was found"
+            text = "no order of the strokes was found that keeps out of forbidden areas"
             return replace(found, message=f"{found.message}; {text}".removeprefix("; ")), problem
         current = answer
     cost = problem.cost_of(current.nodes)
-    text = f"{longer} connectors were measured around forbidden areas"
-    text += f", {blocked} of them have no way" if blocked else ""
+    text = f"connectors that meet forbidden areas: {longer} were tried"
+    text += f", {blocked} of them have no way around and are not used" if blocked else ""
     message = f"{current.message}; {text}".removeprefix("; ")
     bound = min(current.bound, cost)
     return replace(current, cost=cost, bound=bound, message=message), problem

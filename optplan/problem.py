@@ -168,7 +168,7 @@ def ordering_problem(
         def told(share: float) -> None:
             progress(Progress("order", share, message="lengths of connectors"))
 
-        states = ways.exit[:, flat], ways.entry[:, flat]
+        states = family.eased(ways.exit)[:, flat], family.eased(ways.entry)[:, flat]
         costs = MatrixCosts(cc_matrix(*states, 1 / family.radius, family.sharpness, told=told))
     elif family.metric == "dubins":
         from optplan.geometry.dubins import dubins_lengths

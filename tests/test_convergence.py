@@ -12,6 +12,7 @@ from optplan.domain.stop import StopRule
 from optplan.ordering import solve
 from optplan.plot import draw_convergence
 from optplan.plot.convergence import convergence_figure
+from optplan.plot.picture import _labels
 from tests.ordering_cases import strokes
 
 
@@ -45,3 +46,8 @@ def test_nothing_to_draw(tmp_path: Path) -> None:
     if not len(unknown.nodes) and not np.isfinite(unknown.bound):
         with pytest.raises(InputError, match="nothing to draw"):
             draw_convergence(unknown, tmp_path / "a.png")
+
+
+def test_numbers_at_one_place_share_a_label() -> None:
+    places = np.array([[0.0, 0.0], [40.0, 0.0], [2.0, 3.0], [0.0, 20.0], [41.0, 1.0]])
+    assert [text for text, _ in _labels(places)] == ["1, 3", "2, 5", "4"]

@@ -149,3 +149,15 @@ def test_enforced_connections_cost_what_they_add(tmp_path: Path) -> None:
     assert tied.ordering.status == "optimal"
     assert tied.ordering.cost > free.ordering.cost
     assert np.isfinite(tied.ordering.bound)
+
+
+def test_links_of_curved_rings_are_driven() -> None:
+    """A ring made a curve is entered beside its vertex, within the tolerance; the judge holds a link to that."""
+    svg = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><g fill="none" stroke="#000">
+    <circle id="one" cx="5" cy="5" r="3"/><circle id="two" cx="15" cy="9" r="4"/>
+    <path id="line" d="M2 18H18"/></g></svg>"""
+    options = Options(cover=CoverOptions(links=(("one", 0, "two", 1),)), order=OrderOptions(iterations=500))
+    for robot in ("beach-rake", "line-marker"):
+        plan = op.plan(op.read(svg), robot, options)
+        assert plan.report is not None
+        assert plan.report.ok

@@ -35,7 +35,7 @@ def order_instance(file: Path, out: Path | None, options: Options, force: bool, 
     if out is not None and out.exists() and not force:
         raise InputError("exists already; say --force to replace it, or --output for another place", str(out))
     order = options.order
-    with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
+    with output.progress_bar(quiet or json, unit="") as tell, output.cancellable() as wished:
         rule = StopRule(
             seconds=math.inf if order.seconds is None else order.seconds,
             iterations=order.iterations,

@@ -41,8 +41,8 @@ def finite(value: float | None) -> float | None:
 
 
 @contextmanager
-def progress_bar(quiet: bool) -> Iterator[ProgressCallback]:
-    """A callback that draws a bar on a terminal, and does nothing elsewhere."""
+def progress_bar(quiet: bool, unit: str = " m") -> Iterator[ProgressCallback]:
+    """A callback that draws a bar on a terminal, and does nothing elsewhere; costs are in `unit`."""
     if quiet or not sys.stderr.isatty():
         yield silent
         return
@@ -66,7 +66,7 @@ def progress_bar(quiet: bool) -> Iterator[ProgressCallback]:
             changed: dict[str, Any] = {}
             if event.fraction is not None:
                 changed.update(total=1.0, completed=event.fraction)
-            news = _news(event)
+            news = _news(event, unit)
             if news:
                 changed["news"] = news
             bars.update(tasks[event.stage], **changed)
@@ -74,12 +74,12 @@ def progress_bar(quiet: bool) -> Iterator[ProgressCallback]:
         yield tell
 
 
-def _news(event: Progress) -> str:
+def _news(event: Progress, unit: str) -> str:
     parts = []
     if math.isfinite(event.cost):
-        parts.append(f"best {event.cost:.2f} m")
+        parts.append(f"best {event.cost:.2f}{unit}")
     if math.isfinite(event.bound):
-        parts.append(f"bound {event.bound:.2f} m")
+        parts.append(f"bound {event.bound:.2f}{unit}")
     if event.message:
         parts.append(event.message[:40])
     return "  ".join(parts)

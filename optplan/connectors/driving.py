@@ -92,7 +92,12 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
             pieces = driven(stroke, visit.entry_vertex, visit.reverse, robot, options)
             there = np.array([*pieces.start[0], pieces.heading[0], pieces.curvature[0]])
         if here is not None:
-            rows.add(connector(here, there, family, turns, roads), RAISED, -1)
+            begun, ended = family.eased(np.array([here, there]))
+            if begun[3] != here[3]:
+                rows.add(_pieces([_turn(here, 0.0)]), RAISED, int(visits.stroke[row - 1]) if row else -1)
+            rows.add(connector(begun, ended, family, turns, roads), RAISED, -1)
+            if ended[3] != there[3]:
+                rows.add(_pieces([_turn(there, 0.0)]), RAISED, visit.stroke)
         # pins that stay down while the robot turns sharply would draw a swirl
         sharp = (pieces.length == 0) & (np.abs(pieces.turn) > options.connect.corner) & turns
         tool = np.where(sharp, RAISED, stroke.tool)

@@ -43,11 +43,24 @@ class Family(NamedTuple):
         """Whether headings count."""
         return self.metric != "euclid"
 
+    def eased(self, states: FloatArray) -> FloatArray:
+        """States (k, 4 or 5), curvature last, as connectors have them: curvature within the limit of transit.
+
+        Strokes are driven as slowly as their bends ask for; where one begins or ends tighter than this limit, the robot
+        stops, and its wheels turn to the other curvature while it stands.
+        """
+        if self.metric != "cc":
+            return states
+        eased = states.copy()
+        eased[:, -1] = np.clip(states[:, -1], -1 / self.radius, 1 / self.radius)
+        return eased
+
     def lengths(self, exits: FloatArray, entries: FloatArray) -> FloatArray:
         """Lengths (k,) m of connectors between states (k, 5) x, y, z, heading, curvature."""
         if self.metric == "cc":
             from optplan.geometry.cc import cc_lengths
 
+            exits, entries = self.eased(exits), self.eased(entries)
             return cc_lengths(exits[:, _FLAT], entries[:, _FLAT], 1 / self.radius, self.sharpness)
         if self.metric == "dubins":
             from optplan.geometry.dubins import dubins_lengths

@@ -35,7 +35,9 @@ def read(source: str | bytes | os.PathLike[str], *, close_gap: float | None = No
         case ".json":
             return _read_json(file)
     if not file.exists():
-        raise InputError("does not exist", str(file))
+        raise InputError(
+            "does not exist; expected a drawing (.svg), a JSON job, or the name of a shipped one", str(file)
+        )
     raise InputError(f"has the ending {file.suffix!r}; expected .svg, .svgz or .json", str(file))
 
 

@@ -52,7 +52,7 @@ def verify(plan: Plan) -> Report:
         checks += unchecked(_COVER_CHECKS, "the plan has no strokes")
     else:
         done, deviation, exact = _strokes.strokes(path, samples, cover, limit)
-        checks += [done, deviation, _strokes.precedence(path, cover), _strokes.connections(path, samples, cover)]
+        checks += [done, deviation, _strokes.precedence(path, cover), _strokes.connections(path, samples, cover, limit)]
     if plan.visits is None:
         checks += unchecked(["visits"], "the plan does not say which ways of driving were chosen")
     else:

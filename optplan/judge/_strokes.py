@@ -100,8 +100,11 @@ def precedence(path: Path, cover: Cover) -> Check:
     return held("precedence", len(broken), 0, "", place, detail)
 
 
-def connections(path: Path, samples: Samples, cover: Cover) -> Check:
-    """Enforced connections that the path does not follow: from one place directly to the other, in either direction."""
+def connections(path: Path, samples: Samples, cover: Cover, limit: float) -> Check:
+    """Enforced connections that the path does not follow: from one place directly to the other, in either direction.
+
+    What is driven may begin and end beside the vertex by `limit`, m, as it may leave the line.
+    """
     done = [run for run in runs(path) if run.stroke < len(cover.strokes)]
     lines = [_driven(samples, run) for run in done]
     followed: set[int] = set()
@@ -112,7 +115,7 @@ def connections(path: Path, samples: Samples, cover: Cover) -> Check:
                 ends = (cover.strokes[a].points[i], cover.strokes[b].points[j])
                 out, into = ends if forth else ends[::-1]
                 steps = (left[-1] - in_space(out[None])[0], entered[0] - in_space(into[None])[0])
-                if max(float(np.linalg.norm(step)) for step in steps) <= GAP:
+                if max(float(np.linalg.norm(step)) for step in steps) <= limit + GAP:
                     followed.add(k)
     broken = [k for k in range(len(cover.links)) if k not in followed]
     detail, place = f"{count_of(len(cover.links), 'enforced connection')}, all driven.", None

@@ -67,6 +67,8 @@ def choose_and_solve(run: Run) -> StopReason:
     if math.isfinite(run.rule.seconds):
         run.seed += 1
         return _searched(run, 1.0)  # what is left of the time
+    if proofs:
+        run.message += f"; not proved in the {PROOF_SECONDS:g} s that a proof has without a time limit"
     return StopReason.FINISHED
 
 

@@ -22,6 +22,8 @@ ARROWS = 12
 """Direction arrows along work or travel as long as the picture is wide; no more than 100 of each."""
 NUMBERED = 60
 """Up to this many strokes carry their number."""
+LABEL = np.array([13.0, 9.0])
+"""Width and height of such a number, points."""
 CHORD = 0.05
 """Turning between the points of a drawn arc, rad."""
 
@@ -133,7 +135,7 @@ def _draw_path(axes: Axes, plan: Plan, path: Path, colours: _Colours, scale: flo
     spacing = float(max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))) / ARROWS
     _arrows(axes, path, moving & down, spacing, colours.arrow, colours.work)
     _arrows(axes, path, between, spacing, colours.travel, colours.ground)
-    _numbers(axes, plan, colours)
+    _numbers(axes, plan, colours, scale)
 
 
 def _lines(path: Path, rows: BoolArray) -> list[FloatArray]:
@@ -187,13 +189,25 @@ def _arrows(axes: Axes, path: Path, rows: BoolArray, spacing: float, colour: str
     )
 
 
-def _numbers(axes: Axes, plan: Plan, colours: _Colours) -> None:
+def _labels(places: FloatArray) -> list[tuple[str, FloatArray]]:
+    """Numbers from 1 at places (n, 2), points; those that would cover each other share a label."""
+    labels: list[tuple[list[int], FloatArray]] = []
+    for number, place in enumerate(places, start=1):
+        near = [numbers for numbers, other in labels if np.all(np.abs(place - other) < LABEL)]
+        if near:
+            near[0].append(number)
+        else:
+            labels.append(([number], place))
+    return [(", ".join(map(str, numbers)), place) for numbers, place in labels]
+
+
+def _numbers(axes: Axes, plan: Plan, colours: _Colours, scale: float) -> None:
     if plan.visits is None or not 1 < len(plan.visits) <= NUMBERED:
         return
-    for number, place in enumerate(plan.visits.entry[:, :2].tolist(), start=1):
+    for text, place in _labels(plan.visits.entry[:, :2] * scale):
         axes.annotate(
-            str(number),
-            place,
+            text,
+            (place / scale).tolist(),
             xytext=(4, 4),
             textcoords="offset points",
             fontsize=7,

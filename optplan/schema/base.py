@@ -96,8 +96,8 @@ def check_version(data: Any, where: str) -> None:
     version = data.get("version")
     parts = str(version).split(".")
     if len(parts) != 2 or not all(re.fullmatch("[0-9]{1,9}", part) for part in parts):
-        shown = repr(version)[:60]
-        raise InputError(f"version is {shown}; expected {VERSION!r} or an older minor version of it", where)
+        shown = f"version is {repr(version)[:60]}" if "version" in data else "has no version"
+        raise InputError(f"{shown}; expected {VERSION!r} or an older minor version of it", where)
     major, minor = map(int, parts)
     own_major, own_minor = map(int, VERSION.split("."))
     if major != own_major or minor > own_minor:

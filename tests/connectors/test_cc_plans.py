@@ -8,14 +8,30 @@ import pytest
 import optplan as op
 from optplan.connectors.families import family_of
 from optplan.domain.errors import InputError
-from optplan.domain.options import Options, OrderOptions
+from optplan.domain.options import Options, OrderOptions, PageOptions
 from optplan.domain.ordering import Status
+from optplan.domain.report import Verdict
 
 PAGE = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20">
 <path d="M2 2H9" fill="none" stroke="#000"/><path d="M12 5L18 9" fill="none" stroke="#000"/>
 <path d="M4 9V16" fill="none" stroke="#000"/><path d="M9 15L16 16" fill="none" stroke="#000"/>
 <path d="M10 8Q12 12 15 12" fill="none" stroke="#000"/></svg>"""
 CC = Options(order=OrderOptions(metric="cc"))
+
+
+def test_the_robot_stops_before_a_ring_tighter_than_connectors() -> None:
+    """Its curvature may jump while it stands, and nowhere else."""
+    ring = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><path d="M2 2H18M2 18H18" fill="none"
+    stroke="#000"/><circle id="ring" cx="10" cy="10" r="0.12" fill="none" stroke="#000"/></svg>"""
+    options = Options(order=OrderOptions(metric="cc", start=(1.0, 1.0)), page=PageOptions(margin=5.0))
+    plan = op.plan(op.read(ring), "line-marker", options)
+    assert plan.report is not None
+    assert plan.report.ok, [check for check in plan.report.checks if check.verdict is Verdict.FAILED]
+    assert plan.report.figure("continuity order") == 2
+    assert plan.path is not None
+    tight = np.abs(plan.path.curvature) > 1.7
+    assert (plan.path.tool[tight] > 0).all()
+    assert plan.path.is_stop.sum() == 2
 
 
 @pytest.mark.parametrize("start", [None, (5.0, 5.0)])

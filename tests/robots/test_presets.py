@@ -95,7 +95,7 @@ def test_files_of_the_user(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
-        (("version = ", "#"), "version is None"),
+        (("version = ", "#"), "has no version"),
         (('"1.0"', '"2.0"'), "format version 2.0"),
         (('"1.0"', '"1.9"'), "Update optplan"),
         (('"0.4 m/s"', '"0.4 parsec"'), r"mobility.diff-drive.work_speed: .*parsec"),
