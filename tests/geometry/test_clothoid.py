@@ -50,6 +50,16 @@ def test_a_vanishing_sharpness_gives_the_arc(theta: float, kappa: float, length:
         assert end == pytest.approx(arc, abs=1e-12 * length)
 
 
+@pytest.mark.parametrize("share", np.linspace(0.05, 1.5, 30))
+def test_counter_turns_are_as_exact(share: float) -> None:
+    """Through the inflection in the middle, where the heading's second order is all there is."""
+    kappa, length = 1.0, 2.0 * share
+    sigma = -2 * kappa / length
+    x, y, *_ = clothoid_end(0.0, 0.0, 0.0, kappa, sigma, length)
+    dx, dy = driven(0.0, kappa, sigma, length)
+    assert math.hypot(x - dx, y - dy) <= 1e-14
+
+
 def test_lines_have_no_rounding() -> None:
     assert clothoid_end(0.0, 0.0, 0.0, 0.0, 0.0, 1e9) == (1e9, 0.0, 0.0, 0.0)
 

@@ -41,6 +41,21 @@ def test_the_tour_is_optimal(count: int, most: float) -> None:
         assert case.cost_of(tour[1:]) == pytest.approx(best.cost)
 
 
+@pytest.mark.parametrize("unit", [1e-9, 0.1, 1 / 3])
+@pytest.mark.parametrize("closed", [False, True])
+def test_ties_that_rounding_tells_apart_end_too(closed: bool, unit: float) -> None:
+    random = np.random.default_rng(0)
+    for _ in range(60):
+        costs = MatrixCosts(unit * np.floor(random.uniform(0, 10, (8, 8))))
+        case = OrderingProblem(np.arange(8), costs, closed=closed)
+        graph = circular_graph(case, 0 if closed else None, never)
+        start = np.arange(8) if closed else np.roll(np.arange(9), 1)
+        tour, optimal = branched(graph, start, never, math.inf)
+        assert optimal
+        best = solve(case, "brute")
+        assert case.cost_of(tour if closed else tour[1:]) == pytest.approx(best.cost, abs=1e-9 * unit)
+
+
 def test_random_matrices_of_hundreds_of_clusters_are_solved_at_once() -> None:
     case = problem(400, 1000, 3)
     answer = solve(case, "search", StopRule(seconds=30, iterations=20_000))

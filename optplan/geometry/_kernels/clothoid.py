@@ -91,7 +91,8 @@ def _gauss(theta: float, kappa: float, sigma: float, length: float) -> tuple[flo
     a = (kappa + sigma * h) * h
     b = 0.5 * sigma * h * h
     along = across = 0.0
-    if abs(a) + abs(b) < 0.7:
+    # b counts more: its phase is of the second order in z
+    if abs(a) + 4.0 * abs(b) < 0.7:
         for i in range(4):
             z = _NODES_8[i]
             weight = _WEIGHTS_8[i] * math.cos(a * z)

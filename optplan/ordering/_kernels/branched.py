@@ -174,7 +174,9 @@ def branch(tree: Tree, budget: int) -> bool:
         column = tree.columns[level, chosen]
         row = tree.row_of[level, column]
         cost = _cost(tree, tree.row_of[level])
-        _without(tree, tree.price[below], tree.row_of[below], tree.fixed[below], column, cost)
+        if math.isinf(_without(tree, tree.price[below], tree.row_of[below], tree.fixed[below], column, cost)):
+            # as good as the best tour but for rounding, which may be another now: there is no such assignment
+            continue
         tree.excluded[below] = tree.costs[row, column]
         tree.costs[row, column] = math.inf
         place[LEVEL] = below
