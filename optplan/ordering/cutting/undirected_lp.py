@@ -93,6 +93,10 @@ class CutProgramme:
         self.programme = Programme(costs, np.zeros(len(costs)), np.full(len(costs), math.inf), self.seed)
         self._tied = np.flatnonzero(form.mate > np.arange(form.points))
         self._sizes = np.bincount(form.cluster)
+        # marks that are set and taken back for one cut at a time
+        self._inside = np.zeros(form.points, dtype=np.bool_)
+        self._half = np.zeros(form.points)
+        self._tooth = np.zeros(form.clusters**2, dtype=np.bool_)
         links = np.concatenate([np.full(form.clusters, 2.0), np.zeros(len(self._tied))])
         self.programme.add_rows(links, links, _transposed(self._fixed_entries(self.edges), len(links)))
 
@@ -106,6 +110,7 @@ class CutProgramme:
         if not sets:
             return
         u, v = self.edges[:, 0], self.edges[:, 1]
+        numbers = pair_numbers(self.form, u, v)
         rows: list[FloatArray] = []
         for members, pairs in zip(sets, teeth or [NO_TEETH] * len(sets), strict=True):
             inside = np.zeros(self.form.points, dtype=np.bool_)
@@ -118,7 +123,7 @@ class CutProgramme:
                 Cut(members, np.flatnonzero(split), held.sum() - less, pairs),
                 Cut(members, members, -less, pairs),
             ]
-            entries = [self._entries(cut, u, v) for cut in forms]
+            entries = [self._entries(cut, u, v, numbers) for cut in forms]
             best = int(np.argmin([np.count_nonzero(row) for row in entries]))
             self.cuts.append(forms[best])
             rows.append(entries[best])
@@ -139,8 +144,9 @@ class CutProgramme:
             return 0
         fixed = self._fixed_entries(edges)
         parts = [(np.repeat(np.arange(len(edges)), np.diff(fixed.starts)), fixed.places, fixed.values)]
+        numbers = pair_numbers(self.form, edges[:, 0], edges[:, 1])
         for k, cut in enumerate(self.cuts):
-            entries = self._entries(cut, edges[:, 0], edges[:, 1])
+            entries = self._entries(cut, edges[:, 0], edges[:, 1], numbers)
             used = np.flatnonzero(entries)
             parts.append((used, np.full(len(used), self.fixed_rows + k), entries[used]))
         columns, places, values = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -236,24 +242,29 @@ class CutProgramme:
         low = np.flatnonzero(reduced < exact_below)
         u, v = u[low], v[low]
         pairs = pair_numbers(self.form, u, v)
-        inside = np.zeros(self.form.points, dtype=np.bool_)
         for k in np.flatnonzero(dual.cuts).tolist():
-            inside[:] = False
-            inside[self.cuts[k].members] = True
-            counted = inside[u] & inside[v]
-            if len(self.cuts[k].teeth):
-                counted |= (inside[u] != inside[v]) & np.isin(pairs, self.cuts[k].teeth)
-            reduced[low] += dual.cuts[k] * counted
+            reduced[low] += dual.cuts[k] * self._counted(self.cuts[k], u, v, pairs)
         return reduced
 
-    def _entries(self, cut: Cut, u: IntArray, v: IntArray) -> FloatArray:
-        """Entries of the edges u[i], v[i] in the row of a cut."""
-        inside, half = np.zeros(self.form.points), np.zeros(self.form.points)
-        inside[cut.members] = 1.0
-        half[cut.halves] = 0.5
-        entries: FloatArray = inside[u] * inside[v] - half[u] - half[v]
+    def _counted(self, cut: Cut, u: IntArray, v: IntArray, pairs: IntArray) -> Bools:
+        """(k,) which edges u[i], v[i] have both ends in S, or are in a tooth; pairs : their `pair_numbers`."""
+        inside, tooth = self._inside, self._tooth
+        inside[cut.members] = True
+        first, second = inside[u], inside[v]
+        counted: Bools = first & second
         if len(cut.teeth):
-            entries += (inside[u] != inside[v]) & np.isin(pair_numbers(self.form, u, v), cut.teeth)
+            tooth[cut.teeth] = True
+            counted |= (first != second) & tooth[pairs]
+            tooth[cut.teeth] = False
+        inside[cut.members] = False
+        return counted
+
+    def _entries(self, cut: Cut, u: IntArray, v: IntArray, pairs: IntArray) -> FloatArray:
+        """Entries of the edges u[i], v[i] in the row of a cut; pairs : their `pair_numbers`."""
+        half = self._half
+        half[cut.halves] = 0.5
+        entries: FloatArray = self._counted(cut, u, v, pairs) - half[u] - half[v]
+        half[cut.halves] = 0.0
         return entries
 
     def _fixed_entries(self, edges: IntArray) -> Sparse:
