@@ -24,8 +24,9 @@ if TYPE_CHECKING:
     from optplan.ordering._kernels.tour import Graph, State
 
 HOT = 2.0
-COLD = 0.05
-"""Temperature in the beginning and at the end of a run, in mean arcs of the best path."""
+COLD, MILD = 0.02, 0.05
+"""Temperatures in the beginning and at the end of a run, in mean arcs of the best path: one of fewer than `EACH`
+iterations a cluster ends mild, as it has no time to freeze."""
 LEAST, EACH = 5_000, 200
 """Iterations when nothing ends the search, and those added for each cluster."""
 BRANCHING = 0.2
@@ -164,13 +165,14 @@ def _descend(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> Sto
     timed = limit is None and math.isfinite(run.rule.seconds)
     if limit is None:
         limit = ENDLESS if timed else LEAST + EACH * run.problem.clusters
+    cold = COLD if limit >= EACH * run.problem.clusters else MILD
     known, budget, used = math.inf, 500, 0.0
     while True:
         began = time.perf_counter()
         if timed:
             used = min(1.0, run.clock.elapsed / run.rule.seconds)
-        hot = HOT * (COLD / HOT) ** used
-        advance(graph, state, limit, run.rule.target, budget, hot, COLD, 0 if timed else limit)
+        hot = HOT * (cold / HOT) ** used
+        advance(graph, state, limit, run.rule.target, budget, hot, cold, 0 if timed else limit)
         run.iterations = int(state.counts[ITERATION])
         if state.cost[BEST] < known:
             known = float(state.cost[BEST])
