@@ -105,6 +105,15 @@ def test_an_existing_plan_is_kept_unless_asked(run: Runner, two: str) -> None:
     assert Path("made/plan.json").read_bytes() != before
 
 
+def test_exports_of_an_earlier_plan_are_named(run: Runner, two: str) -> None:
+    assert run("plan", two, "-o", "out", "-q", "-e", "csv").code == 0
+    again = run("plan", two, "-o", "out", "-q", "--force")
+    assert again.code == 0
+    assert "of an earlier plan" in again.out
+    assert "plan.csv" in again.out
+    assert "earlier" not in run("plan", two, "-o", "out", "-q", "--force", "-e", "csv").out
+
+
 def test_stages_one_by_one_give_the_same_plan_as_all_at_once(run: Runner, two: str) -> None:
     assert run("plan", two, "-o", "made", "--seed", "3").code == 0
     assert run("cover", two, "-o", "1.json").code == 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -217,10 +217,11 @@ def _plan_and_write(
         for name, target in zip(export, targets[3:], strict=True):
             op.export_plan(plan, name, target, overwrite=force)
     written = [str(target) for target in targets if target.exists()]
-    _tell(plan, written, json)
+    exports = {folder / f"plan{kind.suffix}" for kind in FORMATS.values()} - set(targets)
+    _tell(plan, written, json, [str(file) for file in sorted(exports) if file.exists()])
 
 
-def _tell(plan: Plan, written: list[str], json: bool) -> None:
+def _tell(plan: Plan, written: list[str], json: bool, older: Sequence[str] = ()) -> None:
     """Print a finished plan; exit 1 unless it was verified."""
     good = plan.report is not None and plan.report.ok
     if json:
@@ -235,6 +236,8 @@ def _tell(plan: Plan, written: list[str], json: bool) -> None:
         print(f"{verdict}; written:")
         for file in written:
             print(f"  {file}")
+        if older:
+            print(f"of an earlier plan, left as they were: {', '.join(older)}")
     if not good:
         raise typer.Exit(1)
 
