@@ -105,6 +105,12 @@ def test_an_existing_plan_is_kept_unless_asked(run: Runner, two: str) -> None:
     assert Path("made/plan.json").read_bytes() != before
 
 
+def test_an_instance_of_a_library_has_its_costs(run: Runner) -> None:
+    refused = run("order", "tiers40", "--metric", "cc")
+    assert refused.code == 2
+    assert "--metric" in refused.err
+
+
 def test_exports_of_an_earlier_plan_are_named(run: Runner, two: str) -> None:
     assert run("plan", two, "-o", "out", "-q", "-e", "csv").code == 0
     again = run("plan", two, "-o", "out", "-q", "--force")

@@ -372,6 +372,10 @@ def order(
     flags = dict(locals())
     file = shipped_or_file(file)
     if is_instance(file):
+        for name in ("metric", "start", "entries", "avoid", "areas", "on_canvas", "clearance"):
+            if flags[name] is not None:
+                flag = "--avoid-finished" if name == "avoid" else f"--{name.replace('_', '-')}"
+                raise InputError("says nothing about an instance of a library, which has its costs", flag)
         order_instance(file, out, settings_of({}, flags), force, quiet, json)
     else:
         _stage("order", file, out, flags, rest, force, quiet, json)
