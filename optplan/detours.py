@@ -10,7 +10,7 @@ import numpy as np
 from optplan.connectors.around import Roads, roads_of
 from optplan.connectors.families import family_of, start_states
 from optplan.domain.options import Options
-from optplan.domain.ordering import MatrixCosts, Ordering, OrderingProblem
+from optplan.domain.ordering import MatrixCosts, Ordering, OrderingProblem, Status
 from optplan.domain.progress import Progress, ProgressCallback
 from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
@@ -61,14 +61,14 @@ def with_detours(
     exits, entries = family.eased(ways.exit), family.eased(ways.entry)
     measured: set[tuple[int, int]] = set()
     current, longer, blocked = found, 0, 0
+    best, least, bound = found.nodes, math.inf, -math.inf
     for rounds in range(ROUNDS):
         nodes = current.nodes
-        new = [arc for arc in zip([-1, *nodes[:-1].tolist()], nodes.tolist(), strict=True) if arc not in measured]
         changed = False
-        for tail, head in new:
-            measured.add((tail, head))
-            if tail < 0 and start is None:
+        for tail, head in zip([-1, *nodes[:-1].tolist()], nodes.tolist(), strict=True):
+            if (tail, head) in measured or (tail < 0 and start is None):
                 continue
+            measured.add((tail, head))
             if tail < 0:
                 entry = ways.entry[head : head + 1]
                 heading = start_states(start, entry, family)[0][0] if family.headings and start else 0.0
@@ -83,23 +83,31 @@ def with_detours(
                     begin[head] = length
                 else:
                     costs[tail, head] = length
-        progress(Progress("order", (rounds + 1) / ROUNDS, current.cost, current.bound))
         problem = replace(problem, costs=MatrixCosts(costs), start_costs=begin)
-        if not changed:
+        # all of its connectors are measured now; and what was proved holds for dearer connectors too
+        cost, bound = problem.cost_of(nodes), max(bound, current.bound)
+        if cost < least:
+            best, least = nodes, cost
+        progress(Progress("order", (rounds + 1) / ROUNDS, least, bound))
+        if not changed or clock.reason() is not None or rounds == ROUNDS - 1:
             break
         limits = StopRule(max(clock.remaining, 1e-3), clock.rule.iterations, cancelled=clock.rule.cancelled)
-        first = nodes if math.isfinite(problem.cost_of(nodes)) else None
+        first = nodes if math.isfinite(cost) else None
         answer = solve(problem, options.order.solver, limits, options.order.seed, start=first)
         if not math.isfinite(answer.cost):
-            text = "no order of the strokes was found that keeps out of forbidden areas"
-            return replace(found, message=f"{found.message}; {text}".removeprefix("; ")), problem
+            break
         current = answer
-    cost = problem.cost_of(current.nodes)
+    if math.isinf(least):
+        text = "no order of the strokes was found that keeps out of forbidden areas"
+        return replace(found, message=f"{found.message}; {text}".removeprefix("; ")), problem
     text = f"connectors that meet forbidden areas: {longer} were tried"
     text += f", {blocked} of them have no way around and are not used" if blocked else ""
     message = f"{current.message}; {text}".removeprefix("; ")
-    bound = min(current.bound, cost)
-    return replace(current, cost=cost, bound=bound, message=message), problem
+    if best is current.nodes and not changed:
+        return replace(current, cost=least, message=message), problem
+    # the last answer, or an earlier one that turned out better among the areas
+    bound = min(bound, least)
+    return replace(current, nodes=best, cost=least, bound=bound, status=Status.FEASIBLE, message=message), problem
 
 
 def _length(roads: Roads, here: np.ndarray, there: np.ndarray) -> float:

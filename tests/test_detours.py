@@ -125,3 +125,19 @@ def test_the_judge_measures_how_deep() -> None:
     areas = next(check for check in op.verify(spoiled).checks if check.name == "areas")
     assert areas.verdict is Verdict.FAILED
     assert areas.value >= 0.1
+
+
+def test_a_time_limit_ends_the_solving_again() -> None:
+    """What is returned then is measured all the same: its cost is that of the path."""
+    pond = tuple((x, y) for x, y in ((3.0, 5.0), (8.5, 5.0), (8.5, 7.0), (3.0, 7.0)))
+    options = op.Options(
+        page=op.PageOptions(margin=2.0),
+        order=op.OrderOptions(metric="euclid", seconds=1e-3),
+        connect=op.ConnectOptions(keep_out=(pond,), clearance=0.4),
+    )
+    plan = op.plan(op.read(SVG), "beach-rake", options)
+    assert plan.ordering is not None
+    assert plan.path is not None
+    assert plan.ordering.cost == pytest.approx(float(plan.path.length[plan.path.stroke < 0].sum()))
+    assert plan.ordering.bound <= plan.ordering.cost * (1 + 1e-9)
+    assert plan.ordering.seconds < 5
