@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import heapq
 import math
-import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,38 +12,32 @@ import numpy as np
 from optplan.domain.arrays import IntArray
 from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason
+from optplan.ordering.annealing import EACH, LEAST, anneal
 from optplan.ordering.arrays import grouped, partners
 from optplan.ordering.branched import branchable, branched
 from optplan.ordering.graph import circular_graph
 from optplan.ordering.local import nearest_neighbour
 from optplan.ordering.method import Run
 from optplan.ordering.opened import rotatable
+from optplan.ordering.population import anneal_many
 
 if TYPE_CHECKING:
-    from optplan.ordering._kernels.tour import Graph, State
+    from optplan.ordering._kernels.tour import Graph
 
-HOT = 2.0
-COLD, MILD = 0.02, 0.05
-"""Temperatures in the beginning and at the end of a run, in mean arcs of the best path: one of fewer than `EACH`
-iterations a cluster ends mild, as it has no time to freeze."""
-LEAST, EACH = 5_000, 200
-"""Iterations when nothing ends the search, and those added for each cluster."""
 BRANCHING = 0.2
 """Share of the limits for branching on assignments, before anything is annealed."""
 LOOKS = 100_000
 """Costs that branching looks at in about the time of an iteration."""
 PILOT = 0.28
 """Share of the limits for each direction, before the better one gets the rest."""
-SLICE = 0.03
-"""Seconds between two looks at the stop rule."""
-ENDLESS = 2**62
 
 
 def search(run: Run) -> StopReason:
     """Improve a path from any time to any time; see the kernel `search` for what an iteration is.
 
     Starts from the given solution, else from nearest neighbours. Anneals over the iteration limit when there is one
-    (the answer is then the same for the same seed), else over the time limit, else over 200 iterations a cluster.
+    (the answer is then the same for the same seed), else over the time limit, else over 200 iterations a cluster. Where
+    nodes are chosen and the limits are generous, anneals several times and merges what it found (`population`).
     Beyond 3000 nodes (1000 under Dubins) costs are computed on demand, and memory grows with the nodes.
     """
     problem = run.problem
@@ -93,8 +86,8 @@ def _part(run: Run, share: float) -> Run:
 
 
 def _anneal(run: Run, anchor: int | None) -> StopReason:
-    """Anneal from one path; or shortly from one and from about its reverse, and then from the better."""
-    from optplan.ordering._kernels.tour import MIRROR, ORDER
+    """Branch on assignments, then anneal in the way that suits the problem."""
+    from optplan.ordering._kernels.tour import CHOICES, MIRROR, ORDER
 
     given = run.start is not None
     start, stopped = _start(run)
@@ -107,17 +100,28 @@ def _anneal(run: Run, anchor: int | None) -> StopReason:
         if optimal:
             return run.stop() or StopReason.FINISHED
     limited = run.rule.iterations is not None or math.isfinite(run.rule.seconds)
-    if given or not limited or not (graph.flags[MIRROR] and graph.flags[ORDER]):
-        return _descend(run, graph, anchor, start)
-    # costs hardly tell the two directions apart, and no small change turns a path under precedence
+    if given or not limited:
+        return anneal(run, graph, anchor, start)
+    if graph.flags[ORDER] and graph.flags[MIRROR]:
+        return _both_ways(run, graph, anchor, start)
+    if graph.flags[CHOICES] and not graph.flags[ORDER]:
+        return anneal_many(run, graph, anchor, start)
+    return anneal(run, graph, anchor, start)
+
+
+def _both_ways(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> StopReason:
+    """Anneal shortly from a path and from about its reverse, and then from the better.
+
+    For costs that hardly tell the two directions apart: under precedence no small change turns a path.
+    """
     for way in (start, _turned(run.problem, start, anchor)):
         part = _part(run, PILOT)
-        stopped = _descend(part, graph, anchor, way)
+        stopped = anneal(part, graph, anchor, way)
         run.adopt(part)
         if stopped in (StopReason.CANCELLED, StopReason.TARGET):
             return stopped
     part = _part(run, 1.0)
-    stopped = _descend(part, graph, anchor, _from_anchor(run, run.nodes, anchor) if len(run.nodes) else start)
+    stopped = anneal(part, graph, anchor, _from_anchor(run, run.nodes, anchor) if len(run.nodes) else start)
     run.adopt(part)
     return stopped
 
@@ -155,36 +159,6 @@ def _turned(problem: OrderingProblem, path: IntArray, anchor: int | None) -> Int
     return turned
 
 
-def _descend(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> StopReason:
-    """Anneal from this path, while the limits last."""
-    from optplan.ordering._kernels.search import search as advance
-    from optplan.ordering._kernels.tour import BEST, FINISHED, ITERATION
-
-    state = _state(graph, run.problem.cluster[start], start, run.seed)
-    limit = run.rule.iterations
-    timed = limit is None and math.isfinite(run.rule.seconds)
-    if limit is None:
-        limit = ENDLESS if timed else LEAST + EACH * run.problem.clusters
-    cold = COLD if limit >= EACH * run.problem.clusters else MILD
-    known, budget, used = math.inf, 500, 0.0
-    while True:
-        began = time.perf_counter()
-        if timed:
-            used = min(1.0, run.clock.elapsed / run.rule.seconds)
-        hot = HOT * (cold / HOT) ** used
-        advance(graph, state, limit, run.rule.target, budget, hot, cold, 0 if timed else limit)
-        run.iterations = int(state.counts[ITERATION])
-        if state.cost[BEST] < known:
-            known = float(state.cost[BEST])
-            run.offer(_path(state, anchor, len(graph.first) - 2))
-        stop = run.stop()
-        if stop or state.counts[FINISHED]:
-            return stop or StopReason.FINISHED
-        # how long a slice takes changes only when the rules are looked at, not what is found
-        spent = max(time.perf_counter() - began, 1e-6)
-        budget = int(budget * min(2.0, max(0.5, SLICE / spent)))
-
-
 def _branched(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> tuple[IntArray, bool]:
     """The better of the given path and that from assignments, and whether it is optimal."""
     rule = run.rule
@@ -209,48 +183,3 @@ def _start(run: Run) -> tuple[IntArray | None, StopReason]:
     part.iterations = 0
     run.adopt(part)
     return (None if stopped in (StopReason.CANCELLED, StopReason.TARGET) else start), stopped
-
-
-def _state(graph: Graph, clusters: IntArray, nodes: IntArray, seed: int) -> State:
-    """The search at its beginning, with every cluster in the queue."""
-    from optplan.ordering._kernels.tour import ACTIVE, ANCHOR, END, QUEUE, State
-    from optplan.ordering._kernels.tour import total as cost_of
-
-    anchor, size = int(graph.flags[ANCHOR]), len(graph.first) - 1
-    if len(clusters) < size:
-        clusters, nodes = np.append(anchor, clusters), np.append(graph.first[anchor], nodes)
-    rows = np.zeros((size, 4), dtype=np.int64)
-    steps = np.arange(size) * (END // (size + 1))
-    rows[clusters] = np.column_stack([np.roll(clusters, -1), np.roll(clusters, 1), nodes, steps])
-    lists, marks = np.zeros((5, size), dtype=np.int64), np.full((5, size), -1, dtype=np.int64)
-    lists[ACTIVE], lists[QUEUE] = clusters, clusters
-    marks[ACTIVE:] = 0
-    marks[QUEUE] = 1
-    count = np.zeros(9, dtype=np.int64)
-    count[ACTIVE] = count[QUEUE] = size
-    cost = float(cost_of(graph, rows))
-    mean = max(abs(cost + graph.offset) / size, 1e-300)
-    return State(
-        rows,
-        rows.copy(),
-        rows[:, [0, 2]].copy(),
-        marks,
-        lists,
-        np.zeros(graph.first[-1]),
-        np.zeros(graph.first[-1], dtype=np.int64),
-        count,
-        # gains in the last digits are rounding, and could go on for ever
-        np.array([cost, cost, cost, 1e-10 * mean]),
-        np.array([seed % 2**64], dtype=np.uint64),
-    )
-
-
-def _path(state: State, anchor: int | None, depot: int) -> IntArray:
-    """The best tour's nodes from the anchor on; without the depot."""
-    following, nodes = state.best.T.tolist()
-    first = depot if anchor is None else anchor
-    path, c = [], following[first]
-    while c != first:
-        path.append(nodes[c])
-        c = following[c]
-    return np.array(path if anchor is None else [nodes[first], *path], dtype=np.int64)

@@ -15,6 +15,8 @@ from optplan.domain.costs import EuclidCosts, MatrixCosts
 from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering import SOLVERS, solve
+from optplan.ordering.graph import circular_graph
+from optplan.ordering.population import neighbours
 from optplan.ordering.tsplib import read_tsplib
 from tests.ordering_cases import Case, cases, strokes
 
@@ -89,6 +91,25 @@ def test_same_seed_and_iterations_same_answer(problem: OrderingProblem, closed: 
     answers = [solve(problem, "search", StopRule(seconds, 700), seed=3) for seconds in (60.0, 600.0)]
     assert answers[0].nodes.tolist() == answers[1].nodes.tolist()
     assert answers[0].iterations >= 700
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_several_annealings_keep_to_their_limit(closed: bool) -> None:
+    problem, limit = replace(rings(25, 8), closed=closed), 25 * 1000 + 7
+    answers = [solve(problem, "search", StopRule(iterations=limit), seed=seed) for seed in (3, 3, 4)]
+    assert answers[0].nodes.tolist() == answers[1].nodes.tolist()
+    assert all(answer.iterations == limit and problem.faults(answer.nodes) == [] for answer in answers)
+    assert answers[0].cost == pytest.approx(answers[2].cost, rel=1e-9)
+
+
+def test_mergers_know_only_the_arcs_of_both() -> None:
+    problem = rings(6, 4)
+    graph = circular_graph(problem, None, lambda: None)
+    near = neighbours(graph, [np.array([0, 1, 2, 3, 4, 5, 6]), np.array([0, 2, 1, 3, 4, 5, 6])])
+    assert near.shape == (2, 7, 4)
+    assert near[0].tolist() == near[1].tolist()
+    assert near[0][:2].tolist() == [[1, 2, 6, -1], [0, 2, 3, -1]]
+    assert near[0][5].tolist() == [4, 6, -1, -1]
 
 
 @pytest.mark.parametrize("density", [0.01, 0.15, 0.6])
