@@ -28,9 +28,10 @@ PROOF_SECONDS = 10.0
 """For the proof when there is no time limit."""
 SHORT, EVEN, LONG = 0.15, 0.5, 0.7
 """Share of the time for the search: before a proof that is likely, one that is not, and when none is tried."""
-BEFORE_PROOF = 0.05
+BEFORE_PROOF = 0.03
 """Most seconds a cluster for the search before a proof, however much time there is."""
-BOUND_SHARE = 0.1
+BOUND_SHARE, FIRST_BOUND = 0.1, 0.02
+"""Share of the time for the bound by 1-trees: when it is all there will be, and before a proof."""
 
 BRUTE = Method("brute", "", subset_programme)
 IDEALS = Method("dp", "", prove_by_ideals, refuse_loose_precedence)
@@ -57,7 +58,8 @@ def choose_and_solve(run: Run) -> StopReason:
     stop = _searched(run, share, BEFORE_PROOF * run.problem.clusters if proofs else math.inf)
     if ended := _over(run, stop):
         return ended
-    run.prove(tree_bound(run.problem, StopRule(BOUND_SHARE * run.rule.seconds, cancelled=run.rule.cancelled)))
+    bound_share = FIRST_BOUND if proofs else BOUND_SHARE
+    run.prove(tree_bound(run.problem, StopRule(bound_share * run.rule.seconds, cancelled=run.rule.cancelled)))
     for number, proof in enumerate(proofs):
         if ended := _over(run, stop):
             return ended
