@@ -123,7 +123,8 @@ class CutProgramme:
                 Cut(members, np.flatnonzero(split), held.sum() - less, pairs),
                 Cut(members, members, -less, pairs),
             ]
-            entries = [self._entries(cut, u, v, numbers) for cut in forms]
+            counted = self._counted(forms[0], u, v, numbers)
+            entries = [self._entries(cut, counted, u, v) for cut in forms]
             best = int(np.argmin([np.count_nonzero(row) for row in entries]))
             self.cuts.append(forms[best])
             rows.append(entries[best])
@@ -146,7 +147,8 @@ class CutProgramme:
         parts = [(np.repeat(np.arange(len(edges)), np.diff(fixed.starts)), fixed.places, fixed.values)]
         numbers = pair_numbers(self.form, edges[:, 0], edges[:, 1])
         for k, cut in enumerate(self.cuts):
-            entries = self._entries(cut, edges[:, 0], edges[:, 1], numbers)
+            counted = self._counted(cut, edges[:, 0], edges[:, 1], numbers)
+            entries = self._entries(cut, counted, edges[:, 0], edges[:, 1])
             used = np.flatnonzero(entries)
             parts.append((used, np.full(len(used), self.fixed_rows + k), entries[used]))
         columns, places, values = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -259,11 +261,11 @@ class CutProgramme:
         inside[cut.members] = False
         return counted
 
-    def _entries(self, cut: Cut, u: IntArray, v: IntArray, pairs: IntArray) -> FloatArray:
-        """Entries of the edges u[i], v[i] in the row of a cut; pairs : their `pair_numbers`."""
+    def _entries(self, cut: Cut, counted: Bools, u: IntArray, v: IntArray) -> FloatArray:
+        """Entries of the edges u[i], v[i] in the row of a cut; counted : `_counted` of these edges."""
         half = self._half
         half[cut.halves] = 0.5
-        entries: FloatArray = self._counted(cut, u, v, pairs) - half[u] - half[v]
+        entries: FloatArray = counted - half[u] - half[v]
         half[cut.halves] = 0.0
         return entries
 
