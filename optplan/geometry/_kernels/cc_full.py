@@ -274,13 +274,14 @@ def full_words(
         for i in range(1, waiting):
             if guesses[i, 0] < guesses[first, 0]:
                 first = i
-        length, row, t1, m, t2, near = guesses[first]
-        if length > LATE * shortest and s > LONG:
+        guess = guesses[first]
+        row, t1, m, t2, near = int(guess[1]), guess[2], guess[3], guess[4], guess[5]
+        if guess[0] > LATE * shortest and s > LONG:
             break
         waiting -= 1
         guesses[first] = guesses[waiting]
         d = 1.0 - 2.0 * row
         side1, side2 = (sides[0], sides[2]) if row == 0 else (sides[1], sides[3])
         length, t1, m, t2 = three_extrema(t1, m, t2, x, d * y, d * theta, side1, side2, limits, table, shortest, near)
-        _keep(best, 4 + int(row), CCC, d, d, t1, m, t2, length)
+        _keep(best, 4 + row, CCC, d, d, t1, m, t2, length)
         shortest = min(shortest, length)
