@@ -279,7 +279,8 @@ def full_words(
         if guess[0] > LATE * shortest and s > LONG:
             break
         waiting -= 1
-        guesses[first] = guesses[waiting]
+        for i in range(6):
+            guesses[first, i] = guesses[waiting, i]
         d = 1.0 - 2.0 * row
         side1, side2 = (sides[0], sides[2]) if row == 0 else (sides[1], sides[3])
         length, t1, m, t2 = three_extrema(t1, m, t2, x, d * y, d * theta, side1, side2, limits, table, shortest, near)

@@ -208,7 +208,8 @@ def lines(
             table,
         )
         waiting -= 1
-        brackets[first] = brackets[waiting]
+        for i in range(9):
+            brackets[first, i] = brackets[waiting, i]
         if m >= least and count < LINES:
             out[count, 0] = row
             out[count, 1] = m + (2.0 * (t1 + t2) - side1[1] - side2[1]) / s
