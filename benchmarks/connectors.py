@@ -110,8 +110,8 @@ def lengths() -> Iterator[Row]:
 
 def optimised() -> Iterator[Row]:
     """Connectors optimised from the shortest CC path, at N = 40."""
-    from optplan.connectors.optimised import optimised_connector
-    from optplan_models.connector import optimise
+    from optplan.connectors.optimised import ATTEMPTS, optimised_connector
+    from optplan_models.connector import INTERVALS, optimise
 
     if not LISTS.is_dir():
         return
@@ -132,8 +132,9 @@ def optimised() -> Iterator[Row]:
         begun = time.process_time()
         found = optimise(start, goal, kappa, sigma, pieces)
         seconds.append(time.process_time() - begun)
-        if not found.converged:
-            found = optimise(start, goal, kappa, sigma, pieces, solver="ipopt")
+        for solver, fineness in ATTEMPTS[1:]:
+            if not found.converged:
+                found = optimise(start, goal, kappa, sigma, pieces, intervals=fineness * INTERVALS, solver=solver)
         failed += not found.converged
         missed.append(found.missed if found.converged else 0.0)
         curve = optimised_connector(start, end, kappa, sigma).curve

@@ -30,7 +30,11 @@ TOLERANCE = 1e-9
 """Of the constraints, in units of the least radius."""
 REACHED = 1e-6
 """m and rad: an end that is missed by more is no solution."""
-_NODES, _WEIGHTS = (0.5 * (1 + x) if k == 0 else 0.5 * x for k, x in enumerate(np.polynomial.legendre.leggauss(4)))
+_NODES, _WEIGHTS = (0.5 * (1 + x) if k == 0 else 0.5 * x for k, x in enumerate(np.polynomial.legendre.leggauss(3)))
+BARRIER = 1e-3
+"""of the first iteration, where paths lie at their limits: a greater one drives good guesses away from them"""
+BENT = 1e-2
+"""share of the sharpness limit by which guesses are bent, left and back"""
 _FINE, _FINE_WEIGHTS = np.polynomial.legendre.leggauss(10)
 STATE = 5
 """x, y, heading, curvature, length."""
@@ -123,7 +127,9 @@ def optimise(
     rate = sharpness / scale**2
     states, rates = _resample(guess, scale, intervals)
     states[:, 3] = np.clip(states[:, 3], -1.0, 1.0)
-    rates = np.clip(rates / rate, -1.0, 1.0)
+    # a guess that is an optimum already, such as a line, leaves fatrop's line search nothing to gain, and it cycles
+    bent = np.where(np.arange(intervals) < intervals / 2, BENT, -BENT)
+    rates = np.clip(rates / rate + bent, -1.0, 1.0)
     states[0] = [0.0, 0.0, 0.0, start[3] / scale, states[0, 4]]
     given = pace or Pace(1.0, 1.0, 0.0)
     slow = np.array([1.0, given.top / given.wheel, given.top / given.wheel * given.half_track * scale])
@@ -318,6 +324,8 @@ def _program(intervals: int, objective: Objective, planes: bool, solver: str) ->
     if solver == "fatrop":
         options |= {"structure_detection": "auto", "equality": equal}
         options["fatrop"] = {"print_level": 0, "tol": TOLERANCE, "max_iter": 300}
+        if objective != "effort":
+            options["fatrop"]["mu_init"] = BARRIER
     else:
         options["ipopt"] = {"print_level": 0, "sb": "yes", "tol": TOLERANCE, "max_iter": 500}
     return _Program(

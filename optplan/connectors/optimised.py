@@ -24,8 +24,9 @@ ROUNDS = 5
 """Most rounds of it, each between the half-planes of the one before."""
 ENOUGH = 1e-4
 """A round that gains less than this share is the last."""
-SOLVERS = ("fatrop", "ipopt")
-"""Tried in this order: the second one only where the first finds nothing."""
+ATTEMPTS = (("fatrop", 1), ("fatrop", 2), ("ipopt", 2))
+"""Solver and fineness of the grid, tried in this order until one finds something: between bends at the limit, a path
+may not exist on the coarse grid."""
 
 
 class Optimised(NamedTuple):
@@ -70,6 +71,7 @@ def optimised_connector(
     InputError : limits that are not above 0, states that are not finite or beyond the limit
     ValueError : a time without a pace, an unknown objective
     """
+    from optplan_models.connector import INTERVALS as COARSE
     from optplan_models.connector import optimise
 
     if surroundings is not None:
@@ -90,7 +92,7 @@ def optimised_connector(
         turned = start[2] + float((length * (kappa + sigma * length / 2)).sum())
         whole = end[2] + 2 * np.pi * round((turned - end[2]) / (2 * np.pi))
         goal = np.array([end[0], end[1], whole, end[3]], dtype=np.float64)
-        for solver in SOLVERS:
+        for solver, fineness in ATTEMPTS:
             found = optimise(
                 np.asarray(start, dtype=np.float64),
                 goal,
@@ -99,6 +101,7 @@ def optimised_connector(
                 guess,
                 objective=objective,
                 pace=pace,
+                intervals=fineness * COARSE,
                 solver=solver,
                 length_limit=longest,
             )

@@ -177,6 +177,22 @@ def test_ways_with_pieces_missing_are_found(curvature: float, pieces: list[tuple
     assert path.length <= sum(length for _, length in pieces) * (1 + 1e-9)
 
 
+@pytest.mark.parametrize(
+    ("start", "end", "length"),
+    [
+        ([1.9, 0.1, -2.1, 1.0], [0.0, 1.7, -2.1, -1.0], 17.271),
+        ([0.2, 0.1, -0.8, -1.0], [1.9, 1.5, -1.0, 1.0], 17.82),
+        ([0.8, 0.9, 0.6, 0.0], [1.5, 1.1, 2.3, 0.0], 10.367),
+    ],
+)
+def test_where_words_are_long_peaks_below_the_limit_are_found(
+    start: list[float], end: list[float], length: float
+) -> None:
+    path = cc_path(np.array(start), np.array(end), 1.0, 0.2)
+    check(path, np.array(end), 1.0, 0.2)
+    assert path.length <= length
+
+
 def test_a_sharpness_without_limit_gives_dubins() -> None:
     random = np.random.default_rng(5)
     starts, ends = states(random, 500, 10, 0.0), states(random, 500, 10, 0.0)

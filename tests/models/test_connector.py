@@ -58,6 +58,14 @@ def test_it_ends_where_it_should_within_its_limits(case: int, solver: str) -> No
     assert path.length >= math.dist(start[:2], end[:2]) - 1e-9
 
 
+@pytest.mark.parametrize("length", [0.3, 1.0, 2.0, 3.0, 7.7])
+def test_a_line_that_is_optimal_already_is_no_trouble(length: float) -> None:
+    end = np.array([length, 0.0, 0.0, 0.0])
+    path = optimise(np.zeros(4), end, 1.0, 1.0, (np.zeros(1), np.zeros(1), np.array([length])))
+    assert path.converged
+    assert path.length == pytest.approx(length, rel=1e-8)
+
+
 def test_both_solvers_agree() -> None:
     for start, end, guess in CASES:
         first, second = (optimise(start, end, 1.0, 1.0, guess, solver=name).length for name in ("fatrop", "ipopt"))

@@ -1,4 +1,7 @@
-"""All words at full sharpness, in compiled code. Lengths are in least radii (see `spiral`)."""
+"""All words at full sharpness, in compiled code. Lengths are in least radii (see `spiral`).
+
+Lines are found first. Then the guesses of words with three extrema are gathered and tried, the shortest first.
+"""
 
 from __future__ import annotations
 
@@ -8,20 +11,26 @@ import numpy as np
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
-from optplan.geometry._kernels.cc_scan import FACTOR, LINES, lines
-from optplan.geometry._kernels.cc_turns import Limits, Side, from_least, limits_of, side_of
+from optplan.geometry._kernels.cc_scan import FACTOR, LINES, LONG, lines
+from optplan.geometry._kernels.cc_turns import Side, from_least, limits_of, side_of
 from optplan.geometry._kernels.cc_words import CCC, CSC, three_extrema
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
-LONG = 0.15
-"""sharpness limit from which on a turn by more than two circles is tried"""
+GUESSES = 96
+"""room for guesses: length, word, first peak, valley, last peak, by how much it may miss"""
 WIDE = 24
 """rows of valleys down to the limit, and as many of arcs there"""
+LATE = 1.5
+"""A guess this many times as long as the shortest path by then comes too late: guesses are too long by less."""
+NEAR = 0.7
+"""share of its length by which the guess of small outer turns may miss"""
 SLIGHT = 0.12
 """guess of the valley of a slight counter-turn"""
-HARD = 0.5
-"""sharpness limit from which on words are so long that slight counter-turns pay"""
+WINDING = 1.5
+"""rad; wiggles whose chord is off the mean curvature by more do not pay"""
+HARD = 0.6
+"""sharpness limit from which on words are so long that slight counter-turns, and more guesses of peaks, pay"""
 
 
 @njit("float64[:, ::1](float64, float64[:, ::1])", cache=True, nogil=True, error_model="numpy")
@@ -77,6 +86,12 @@ def _keep(
         best[row, 6] = t2
 
 
+@njit("float64(float64)", cache=True, nogil=True, error_model="numpy", inline="always")
+def _wrapped(angle: float) -> float:
+    """In [-pi, pi)."""
+    return angle - TWO_PI * math.floor(angle / TWO_PI + 0.5)
+
+
 @njit("float64(float64, float64)", cache=True, nogil=True, error_model="numpy")
 def _extended(t: float, s: float) -> float:
     """Angle turned between curvatures 0 around an extended extremum."""
@@ -84,82 +99,82 @@ def _extended(t: float, s: float) -> float:
 
 
 @njit(
-    "void(int64, float64, float64, float64, float64, float64, float64, UniTuple(float64, 9), UniTuple(float64, 9),"
-    "UniTuple(float64, 6), float64[:, ::1], float64, float64[:, ::1], float64)",
+    "int64(float64[:, ::1], int64, int64, float64, float64, float64, float64, float64, float64, float64, float64,"
+    "float64)",
     cache=True,
     nogil=True,
     error_model="numpy",
 )
-def _try(
+def _note(
+    guesses: FloatArray,
+    count: int,
     row: int,
     t1: float,
     m: float,
     t2: float,
-    x: float,
-    y: float,
-    theta: float,
-    side1: Side,
-    side2: Side,
-    limits: Limits,
-    table: FloatArray,
+    a: float,
+    b: float,
+    s: float,
     distance: float,
-    best: FloatArray,
-    bound: float,
-) -> None:
-    """Starts Newton's method unless the guess is much too long, or too short to come this far."""
-    guess = (2.0 * (t1 + m + t2) - side1[1] - side2[1]) / limits[0]
-    if guess > FACTOR * bound or 1.2 * guess < distance:
-        return
-    length, t1, m, t2 = three_extrema(t1, m, t2, x, y, theta, side1, side2, limits, table, bound)
-    _keep(best, row, CCC, side1[0], side1[0], t1, m, t2, length)
+    most: float,
+    near: float,
+) -> int:
+    """Adds a guess unless it is too long, or too short to come this far; returns their number."""
+    length = (2.0 * (t1 + m + t2) - a - b) / s
+    if length > most or 1.2 * length < distance or count == GUESSES:
+        return count
+    guess = guesses[count]
+    guess[0], guess[1], guess[2], guess[3], guess[4], guess[5] = length, row, t1, m, t2, near
+    return count + 1
 
 
 @njit(
-    "void(int64, float64, float64, float64, UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6),"
-    "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64)",
+    "int64(float64[:, ::1], int64, int64, float64, float64, float64, UniTuple(float64, 9), UniTuple(float64, 9),"
+    "float64, float64[:, ::1], float64)",
     cache=True,
     nogil=True,
     error_model="numpy",
 )
 def _three_turns(
+    guesses: FloatArray,
+    count: int,
     row: int,
     x: float,
     y: float,
     theta: float,
     side1: Side,
     side2: Side,
-    limits: Limits,
-    table: FloatArray,
+    s: float,
     middles: FloatArray,
-    best: FloatArray,
-    bound: float,
-) -> None:
-    """CCC words of two guesses: small outer turns, and circles at the limit whose centres the middle spans.
+    most: float,
+) -> int:
+    """Guesses of CCC words: wiggles, small outer turns, and circles at the limit whose centres the middle spans.
 
-    Mirrored for RLR. Guesses much above `bound` are left out; it does not change on the way, so that a reversed query
-    tries the same ones.
+    Mirrored for RLR. Returns the number of guesses.
     """
-    s = limits[0]
     a = side1[1]
     b = side2[1]
     distance = math.hypot(x, y)
     # wiggles about the mean of the ends' curvatures, as long as the chord: the ways of short moves along a curve
     wiggle = 0.25 * s * distance
+    mean = 0.5 * (a + b)
+    off = _wrapped(theta - mean * distance)
+    off_chord = _wrapped(math.atan2(y, x) - 0.5 * mean * distance)
     loose = 0.01 + 0.3 * s * distance * distance
-    off = theta - 0.5 * (a + b) * distance
-    off -= TWO_PI * math.floor(off / TWO_PI + 0.5)
-    if wiggle < 2.0 and abs(off) < loose:
-        k = max(0.5 * (a + b) - wiggle, -1.0)
+    # how far the chord may be off at either end; where words are long they wind
+    loose_chord = min(loose, WINDING) if s >= HARD else math.inf
+    if wiggle < 2.0 and abs(off) < loose and abs(off_chord) < loose_chord and abs(off - off_chord) < loose_chord:
+        k = max(mean - wiggle, -1.0)
         t1 = max(a + 0.5 * wiggle, k)
         t2 = max(b + 0.5 * wiggle, k)
-        _try(row, t1, -k, t2, x, y, theta, side1, side2, limits, table, distance, best, bound)
+        count = _note(guesses, count, row, t1, -k, t2, a, b, s, distance, most, math.inf)
     t1 = max(0.15, a + 0.05)
     t2 = max(0.15, b + 0.05)
     turning = from_least(_extended(t1, s) + _extended(t2, s) - 0.5 * (a * a + b * b) / s - theta, 0.0)
     for j in range(3 if s < LONG else 2):
-        most = turning + j * TWO_PI
-        m = math.sqrt(s * most) if s * most < 1.0 else 0.5 * (s * most + 1.0)
-        _try(row, t1, m, t2, x, y, theta, side1, side2, limits, table, distance, best, bound)
+        turned = turning + j * TWO_PI
+        m = math.sqrt(s * turned) if s * turned < 1.0 else 0.5 * (s * turned + 1.0)
+        count = _note(guesses, count, row, t1, m, t2, a, b, s, distance, most, NEAR)
     c = math.cos(theta)
     sn = math.sin(theta)
     gx = x - c * side2[7] - sn * side2[8] - side1[7]
@@ -185,9 +200,14 @@ def _three_turns(
                 t1 = 1.0 + 0.5 * s * (arc1 - TWO_PI * (j & 1))
                 t2 = 1.0 + 0.5 * s * (arc2 - TWO_PI * (j >> 1))
                 if t1 >= -w and t2 >= -w:
-                    t1 = max(t1, 0.1)
-                    t2 = max(t2, 0.1)
-                    _try(row, t1, w, t2, x, y, theta, side1, side2, limits, table, distance, best, bound)
+                    # the linear extended peak, which serves turns near the circle, and where words are long also the
+                    # peak below the limit that turns as far
+                    count = _note(guesses, count, row, max(t1, 0.1), w, max(t2, 0.1), a, b, s, distance, most, math.inf)
+                    if s < HARD and min(t1, t2) < 0.85:
+                        t1 = t1 if t1 > 1.0 else math.sqrt(max(2.0 * t1 - 1.0, 0.01))
+                        t2 = t2 if t2 > 1.0 else math.sqrt(max(2.0 * t2 - 1.0, 0.01))
+                        count = _note(guesses, count, row, t1, w, t2, a, b, s, distance, most, math.inf)
+    return count
 
 
 @njit(
@@ -230,42 +250,39 @@ def full_words(
             _keep(best, row, CSC, d1, d2, found[i, 3], max(found[i, 2], 0.0), found[i, 4], found[i, 1])
             shortest = min(shortest, found[i, 1])
     distance = math.hypot(x, y)
+    most = FACTOR * shortest
+    guesses = np.empty((GUESSES, 6))
+    waiting = 0
     for i in range(count):
         row = int(found[i, 0])
         m = found[i, 2]
         if row < 2 and (m < 0.0 or s < HARD):
             # a line that would be driven backwards: a valley above 0 takes its place; and a short one may do better
             # as a slight turn the other way
-            d = 1.0 - 2.0 * row
             m = max(-0.95, 0.5 * s * m) if m < 0.0 else SLIGHT
-            _try(
-                4 + row,
-                found[i, 3],
-                m,
-                found[i, 4],
-                x,
-                d * y,
-                d * theta,
-                sides[0] if row == 0 else sides[1],
-                sides[2] if row == 0 else sides[3],
-                limits,
-                table,
-                distance,
-                best,
-                shortest,
+            d = 1.0 - 2.0 * row
+            waiting = _note(
+                guesses, waiting, row, found[i, 3], m, found[i, 4], d * a, d * b, s, distance, most, math.inf
             )
     for row in range(2):
         d = 1.0 - 2.0 * row
-        _three_turns(
-            4 + row,
-            x,
-            d * y,
-            d * theta,
-            sides[0] if row == 0 else sides[1],
-            sides[2] if row == 0 else sides[3],
-            limits,
-            table,
-            middles,
-            best,
-            shortest,
-        )
+        side1, side2 = (sides[0], sides[2]) if row == 0 else (sides[1], sides[3])
+        waiting = _three_turns(guesses, waiting, row, x, d * y, d * theta, side1, side2, s, middles, most)
+    # the shortest first, so that a reversed query takes the same ones
+    while waiting > 0:
+        first = 0
+        for i in range(1, waiting):
+            if guesses[i, 0] < guesses[first, 0]:
+                first = i
+        guess = guesses[first]
+        row, t1, m, t2, near = int(guess[1]), guess[2], guess[3], guess[4], guess[5]
+        if guess[0] > LATE * shortest and s > LONG:
+            break
+        waiting -= 1
+        for i in range(6):
+            guesses[first, i] = guesses[waiting, i]
+        d = 1.0 - 2.0 * row
+        side1, side2 = (sides[0], sides[2]) if row == 0 else (sides[1], sides[3])
+        length, t1, m, t2 = three_extrema(t1, m, t2, x, d * y, d * theta, side1, side2, limits, table, shortest, near)
+        _keep(best, 4 + row, CCC, d, d, t1, m, t2, length)
+        shortest = min(shortest, length)

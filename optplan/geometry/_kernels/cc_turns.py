@@ -122,18 +122,14 @@ def _gap(
 
 
 @njit(
-    "UniTuple(float64, 3)(float64, float64, float64, float64, float64, float64, float64, float64, float64,"
-    "float64, float64,"
+    "UniTuple(float64, 3)(float64[::1], float64, float64, float64, float64, float64, float64, float64,"
     "UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
     error_model="numpy",
 )
 def line_root(
-    low: float,
-    high: float,
-    f_low: float,
-    f_high: float,
+    bracket: FloatArray,
     shift1: float,
     shift2: float,
     x: float,
@@ -148,9 +144,22 @@ def line_root(
 ) -> tuple[float, float, float]:
     """Line's length and both peaks where f vanishes between headings at which it has two signs.
 
-    NaN once it is clear that the line is shorter than `least`, or line and turns longer than `most`.
+    The bracket's columns from 3 on: both headings, f at both, f' at both. The search begins at the root of the cubic
+    that has these values. NaN once it is clear that the line is shorter than `least`, or line and turns longer than
+    `most`.
     """
-    psi = low + (high - low) * f_low / (f_low - f_high)
+    low, high, f_low, f_high = bracket[3], bracket[4], bracket[5], bracket[6]
+    width = high - low
+    c1 = width * bracket[7]
+    c2 = 3.0 * (f_high - f_low) - 2.0 * c1 - width * bracket[8]
+    c3 = f_high - f_low - c1 - c2
+    share = f_low / (f_low - f_high) if f_low != f_high else 0.0
+    u = share
+    for _ in range(3):
+        u -= (f_low + u * (c1 + u * (c2 + u * c3))) / (c1 + u * (2.0 * c2 + 3.0 * u * c3))
+    if not 0.0 <= u <= 1.0:
+        u = share
+    psi = low + width * u
     m = t1 = t2 = 0.0
     close = 3e-12 * (1.0 + abs(x) + abs(y))
     for _ in range(30):
@@ -171,7 +180,7 @@ def line_root(
 
 
 @njit(
-    "UniTuple(float64, 2)(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64,"
+    "UniTuple(float64, 3)(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64,"
     "UniTuple(float64, 9), UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1])",
     cache=True,
     nogil=True,
@@ -192,14 +201,14 @@ def crossing(
     side2: Side,
     limits: Limits,
     table: FloatArray,
-) -> tuple[float, float]:
-    """A heading, and f there, at which f has passed 0 between headings from which it falls towards 0; NaN: none."""
+) -> tuple[float, float, float]:
+    """A heading, f and f' there, at which f has passed 0 between headings from which it falls towards 0; NaN: none."""
     for _ in range(6):
         share = slope_low / (slope_low - slope_high)
         psi = low + (high - low) * min(max(share, 0.05), 0.95)
         f, slope, _, _, _ = _gap(psi, shift1, shift2, x, y, theta, side1, side2, limits, table)
         if f * f_low <= 0.0:
-            return psi, f
+            return psi, f, slope
         if slope * slope_low > 0.0:
             low = psi
             slope_low = slope
@@ -209,4 +218,4 @@ def crossing(
         # the rest of the way is too short for the slopes left
         if abs(f) > max(abs(slope_low), abs(slope_high)) * (high - low):
             break
-    return math.nan, 0.0
+    return math.nan, 0.0, 0.0

@@ -77,39 +77,57 @@ def _half(
     Place, heading, its cosine and sine; and how a metre more at the peak (curvature top) moves the place: x, y, top.
     """
     _, a, _, ox, oy, ca, sa, _, _ = side
-    s, _, _, half, _, _ = limits
+    s, ex, ey, half, g_held, h_held = limits
+    # exp(i half) of the limit itself
+    limit_c = -ey - h_held
+    limit_s = ex - g_held
     top = min(t, 1.0)
-    ex, ey = spiral(table, top)
+    pc = limit_c
+    ps = limit_s
+    if t < 1.0:
+        ex, ey = spiral(table, top)
+        pc = math.cos(half * top * top)
+        ps = math.sin(half * top * top)
     x = ca * ex - sa * ey + ox
     y = sa * ex + ca * ey + oy
-    theta = half * (top * top - a * a)
-    c = math.cos(theta)
-    sn = math.sin(theta)
+    c = ca * pc - sa * ps
+    sn = sa * pc + ca * ps
+    theta = half * (2.0 * top * top - a * a)
     jx, jy, jc, js = x, y, c, sn
     if t > 1.0:
-        theta += 2.0 * (t - 1.0) / s
-        c = math.cos(theta)
-        sn = math.sin(theta)
+        arc = 2.0 * (t - 1.0) / s
+        theta += arc
+        ac = math.cos(arc)
+        as_ = math.sin(arc)
+        c = jc * ac - js * as_
+        sn = js * ac + jc * as_
         x += sn - js
         y -= c - jc
+    # down to the middle: the chord is seen from the heading at which the clothoid would come back to 0
+    c, sn = c * pc - sn * ps, sn * pc + c * ps
     k = -min(m, 1.0)
-    ux, uy = spiral(table, k)
-    dx = ex - ux
-    dy = uy - ey
-    theta += half * top * top
-    c = math.cos(theta)
-    sn = math.sin(theta)
+    kx = -limits[1]
+    ky = -limits[2]
+    kc = limit_c
+    ks = limit_s
+    if m < 1.0:
+        kx, ky = spiral(table, k)
+        kc = math.cos(half * k * k)
+        ks = math.sin(half * k * k)
+    dx = ex - kx
+    dy = ky - ey
     x += c * dx - sn * dy
     y += sn * dx + c * dy
+    c, sn = c * kc + sn * ks, sn * kc - c * ks
     theta -= half * k * k
-    c = math.cos(theta)
-    sn = math.sin(theta)
     if m > 1.0:
-        theta -= (m - 1.0) / s
+        arc = (m - 1.0) / s
+        theta -= arc
+        ac = math.cos(arc)
+        as_ = math.sin(arc)
         bx = sn
         by = c
-        c = math.cos(theta)
-        sn = math.sin(theta)
+        c, sn = c * ac + sn * as_, sn * ac - c * as_
         x -= sn - bx
         y += c - by
     return x, y, theta, c, sn, jc - top * (y - jy), js + top * (x - jx), top
@@ -117,7 +135,7 @@ def _half(
 
 @njit(
     "UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64, UniTuple(float64, 9),"
-    "UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1], float64)",
+    "UniTuple(float64, 9), UniTuple(float64, 6), float64[:, ::1], float64, float64)",
     cache=True,
     nogil=True,
     error_model="numpy",
@@ -134,8 +152,11 @@ def three_extrema(
     limits: Limits,
     table: FloatArray,
     longest: float,
+    near: float,
 ) -> tuple[float, float, float, float]:
     """Newton's method for a CCC word: its length (inf: none, or above `longest`), and its extrema.
+
+    A guess that misses by more than `near`, in units of its length, is given up.
 
     Both halves are driven from their ends; how they miss each other in the middle is the residual. So a reversed query
     takes the same steps. x, y, theta are mirrored for a word whose outer turns are to the right.
@@ -159,19 +180,20 @@ def three_extrema(
         size = 1.0 + abs(length)
         error = abs(ex) + abs(ey) + size * abs(et)
         k = -min(m, 1.0)
+        # an extremum that is not one: its clothoids would be driven backwards
+        least = min(p1 - max(a, k), p2 - max(b, k))
         if error <= CLOSE * size:
-            # an extremum that is not one: its clothoids would be driven backwards
-            if min(p1 - max(a, k), p2 - max(b, k)) < -1e-11 or length <= 0.0 or length > longest:
+            if least < -1e-11 or length <= 0.0 or length > longest:
                 break
             return length, t1, m, t2
         if step >= PATIENCE and error > 0.5 * before:
             break
         before = error
         # most guesses that lead nowhere still miss by much of their length after a few steps
-        hopeless = (0.9 if step < 3 else (0.5 if step < 5 else 0.15)) * size
-        if step > 0 and error > hopeless:
+        hopeless = near if step == 0 else (0.9 if step < 3 else (0.5 if step < 5 else 0.15))
+        if error > hopeless * size:
             break
-        if step > 2 and length - 2.0 * (abs(ex) + abs(ey)) > longest:
+        if step > 2 and (length - 2.0 * (abs(ex) + abs(ey)) > longest or least < -0.1 - s * error):
             break
         q13 = c_end * vx + s_end * vy
         q23 = s_end * vx - c_end * vy
