@@ -20,7 +20,8 @@ from optplan.domain.stroke import Stroke
 from optplan.geometry.paths import States, along
 from optplan.problem import traversals
 from optplan.timing.sampling import moments
-from optplan.timing.trapezoid import CONTROL_PERIOD, profile, turn_time
+from optplan.timing.fastest import profile, turn_time
+from optplan.timing.grid import CONTROL_PERIOD
 from tests.strategies import PLOTTER, RAKE, TOOL, WHEELS, array, circle, polylines
 
 
