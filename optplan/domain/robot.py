@@ -100,6 +100,7 @@ class DiffDrive:
     turns_on_spot : whether it may stop and turn
     turn_rate : angular speed of such a turn, rad/s
     radius, sharpness : chosen limits, m and 1/m^2; 0 and infinity leave what the wheels allow
+    reverses : whether it may drive backwards
     """
 
     track: float
@@ -112,6 +113,7 @@ class DiffDrive:
     turn_rate: float = 1.0
     radius: float = 0.0
     sharpness: float = math.inf
+    reverses: bool = False
 
     def __post_init__(self) -> None:
         _positive(self, "track", "wheel_radius", "wheel_speed", "wheel_acceleration", "work_speed", "transit_speed")
@@ -157,6 +159,7 @@ class _AnyCurve:
     """What mobilities share that need no heading: they turn without moving, at no cost of time."""
 
     turns_on_spot = True
+    reverses = False
     turn_rate = math.inf
     turn_acceleration = math.inf
 

@@ -47,6 +47,7 @@ class DiffDriveModel(Model):
     turn_rate: Rate = 1.0
     radius: Length = Field(0.0, description="chosen least turning radius; 0 leaves what the wheels allow")
     sharpness: Sharpness | None = Field(None, description="chosen limit of dkappa/ds")
+    reverses: bool = Field(False, description="whether it may drive backwards")
 
 
 class GantryModel(Model):

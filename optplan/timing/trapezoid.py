@@ -22,7 +22,7 @@ HEADING_STEP = 1e-6
 
 
 def profile(path: Path, robot: Robot, options: Options | None = None) -> Trajectory:
-    """The fastest trapezoidal speed profile along a path, at rest at its ends and at every stop.
+    """The fastest trapezoidal speed profile along a path, at rest at its ends, stops and cusps.
 
     Every piece has its greatest speed (tool and wheels) and acceleration (the outer wheel's share of it in an arc); a
     pass forwards and a pass backwards give the greatest speeds at the joints, and each piece is driven as fast as its
@@ -82,6 +82,7 @@ def _joint_speeds(path: Path, robot: Robot, cap: FloatArray) -> FloatArray:
     change = np.abs(np.sin((path.heading[1:] - end_heading[:-1]) / 2)) * 2
     lift = np.abs(np.diff(path.elevation))
     joint[1:-1][(change > HEADING_STEP) | (lift > HEADING_STEP)] = 0.0
+    joint[path.cusps] = 0.0
     mobility = robot.mobility
     if isinstance(mobility, DiffDrive):
         step = np.abs(path.curvature[1:] - end_curvature[:-1]) * mobility.track / 2

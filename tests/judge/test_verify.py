@@ -122,7 +122,19 @@ def bend_without_stop() -> Plan:
     path = path_of(plan)
     stop = int(np.flatnonzero(path.is_stop)[0])
     keep = np.delete(np.arange(len(path)), stop)
-    names = ("start", "heading", "elevation", "curvature", "sharpness", "length", "turn", "dwell", "tool", "stroke")
+    names = [
+        "start",
+        "heading",
+        "elevation",
+        "curvature",
+        "sharpness",
+        "length",
+        "turn",
+        "dwell",
+        "tool",
+        "stroke",
+        "gear",
+    ]
     return spoiled(plan, **{name: getattr(path, name)[keep] for name in names})
 
 
