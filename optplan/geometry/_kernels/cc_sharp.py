@@ -14,7 +14,7 @@ import math
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
-from optplan.geometry._kernels.cusps import WORDS, arcs, cusp_words, segments_of
+from optplan.geometry._kernels.cusps import KINDS, PLAIN, SEGMENTS, WORDS, arcs, cusp_words, segments_of
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
@@ -212,7 +212,8 @@ def sharp_words(
         bound = most
         cusp_words(x / radius, y / radius, theta, PROMISING * bound / radius, circles, words)
         for row in range(WORDS):
-            if words[row, 0] * radius >= PROMISING * bound:
+            # words without cusps are left to `cc_full`
+            if row % KINDS < PLAIN or words[row, 0] * radius >= PROMISING * bound:
                 continue
             count = segments_of(words[row], segments)
             length = sharpened(segments, count, x, y, theta, a, b, radius, s, bound, table, work)

@@ -37,7 +37,8 @@ SEGMENTS = 5
 COLUMNS = 5 + SEGMENTS
 """of a word: length, number in `SIDES`, 1 or -1: gears as there, sides as there, order as there; then the segments'
 angles (rad) or lengths"""
-KINDS = 9
+KINDS, PLAIN = 9, 2
+"""kinds of words, the first of them without cusps"""
 WORDS = 2 * KINDS
 """Rows of the shortest words: of each kind that begin forwards, then backwards. Of C|C|C both are often as long."""
 SIDES = np.array(
