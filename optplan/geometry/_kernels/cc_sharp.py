@@ -14,7 +14,7 @@ import math
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
-from optplan.geometry._kernels.cusps import KINDS, PLAIN, SEGMENTS, WORDS, arcs, cusp_words, segments_of
+from optplan.geometry._kernels.cusps import KINDS, PLAIN, WORDS, arcs, cusp_words, segments_of
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
