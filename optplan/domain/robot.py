@@ -101,6 +101,7 @@ class DiffDrive:
     turn_rate : angular speed of such a turn, rad/s
     radius, sharpness : chosen limits, m and 1/m^2; 0 and infinity leave what the wheels allow
     lateral_acceleration : limit of v^2 |kappa|, m/s^2: it tips over or slides beyond
+    reverses : whether it may drive backwards
     """
 
     track: float
@@ -114,6 +115,7 @@ class DiffDrive:
     radius: float = 0.0
     sharpness: float = math.inf
     lateral_acceleration: float = math.inf
+    reverses: bool = False
 
     def __post_init__(self) -> None:
         _positive(self, "track", "wheel_radius", "wheel_speed", "wheel_acceleration", "work_speed", "transit_speed")
@@ -162,6 +164,7 @@ class _AnyCurve:
     """What mobilities share that need no heading: they turn without moving, at no cost of time."""
 
     turns_on_spot = True
+    reverses = False
     turn_rate = math.inf
     turn_acceleration = math.inf
 

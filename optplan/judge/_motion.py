@@ -28,7 +28,7 @@ NAMES = ("time", "rest", "speed", "acceleration", "wheel speed", "wheel accelera
 _INSTANT = 1e-9
 """s below which an interval of time is nothing."""
 _COLUMNS = (
-    "start", "heading", "elevation", "curvature", "sharpness", "length", "turn", "dwell", "tool", "stroke",
+    "start", "heading", "elevation", "curvature", "sharpness", "length", "turn", "dwell", "tool", "stroke", "gear",
 )  # fmt: skip
 
 

@@ -48,6 +48,7 @@ class DiffDriveModel(Model):
     radius: Length = Field(0.0, description="chosen least turning radius; 0 leaves what the wheels allow")
     sharpness: Sharpness | None = Field(None, description="chosen limit of dkappa/ds")
     lateral_acceleration: Acceleration | None = Field(None, description="limit of v^2 |kappa|; none without it")
+    reverses: bool = Field(False, description="whether it may drive backwards")
 
 
 class GantryModel(Model):

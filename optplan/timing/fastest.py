@@ -14,7 +14,7 @@ from optplan.timing.grid import SHORTEST, STEP, Grid, grid_of
 
 
 def profile(path: Path, robot: Robot, options: Options | None = None, step: float = STEP) -> Trajectory:
-    """The fastest speed profile along a path, at rest at its ends and at every stop.
+    """The fastest speed profile along a path, at rest at its ends, stops and cusps.
 
     Time-optimal on its grid (H. Pham and Q.-C. Pham, A new approach to time-optimal path parameterization based on
     reachability analysis, IEEE Transactions on Robotics 34 (2018)): each wheel's speed and acceleration, the speeds for

@@ -185,6 +185,7 @@ def _joint_speeds(path: Path, robot: Robot) -> FloatArray:
     change = np.abs(np.sin((path.heading[1:] - end_heading[:-1]) / 2)) * 2
     lift = np.abs(np.diff(path.elevation))
     joint[1:-1][(change > HEADING_STEP) | (lift > HEADING_STEP)] = 0.0
+    joint[path.cusps] = 0.0
     mobility = robot.mobility
     if isinstance(mobility, DiffDrive):
         step = np.abs(path.curvature[1:] - end_curvature[:-1]) * mobility.track / 2
