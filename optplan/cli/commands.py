@@ -18,6 +18,7 @@ from optplan.cli.settings import (
     Clearance,
     CloseGap,
     ConfigFile,
+    ConstantSpeed,
     Corner,
     Direction,
     ElementFill,
@@ -26,10 +27,12 @@ from optplan.cli.settings import (
     InnerFirst,
     Inset,
     Iterations,
+    JerkLimit,
     Links,
     Margin,
     Metric,
     OnCanvas,
+    PowerLimit,
     Reversing,
     RobotName,
     Seed,
@@ -135,6 +138,9 @@ def plan_command(
     reversing: Reversing = None,
     work_speed: WorkSpeed = None,
     transit_speed: TransitSpeed = None,
+    jerk: JerkLimit = None,
+    power: PowerLimit = None,
+    constant_speed: ConstantSpeed = None,
 ) -> None:
     """Plan a job: writes plan.json and a picture, checks the plan and prints the findings."""
     from optplan.instances import shipped_or_file
@@ -435,6 +441,9 @@ def time(
     json: Json = False,
     work_speed: WorkSpeed = None,
     transit_speed: TransitSpeed = None,
+    jerk: JerkLimit = None,
+    power: PowerLimit = None,
+    constant_speed: ConstantSpeed = None,
 ) -> None:
     """Time: the speed profile along the path."""
     _stage("time", file, out, dict(locals()), rest, force, quiet, json)
