@@ -30,6 +30,7 @@ _HOMES = {
     "verify": "optplan.judge",
     "plan": "optplan.pipeline",
     "plan_from": "optplan.pipeline",
+    "resumed": "optplan.resuming",
     "load_plan": "optplan.schema.plans",
     "save_plan": "optplan.schema.plans",
     "draw": "optplan.plot",
@@ -95,6 +96,7 @@ if TYPE_CHECKING:
     from optplan.plot import draw_convergence as draw_convergence
     from optplan.problem import ordering_problem as ordering_problem
     from optplan.problem import traversals as traversals
+    from optplan.resuming import resumed as resumed
     from optplan.robots import load_robot as load_robot
     from optplan.robots import robot_names as robot_names
     from optplan.schema.plans import load_plan as load_plan

@@ -71,7 +71,9 @@ def with_detours(
             measured.add((tail, head))
             if tail < 0:
                 entry = ways.entry[head : head + 1]
-                heading = start_states(start, entry, family)[0][0] if family.headings and start else 0.0
+                heading = 0.0
+                if family.headings and start:
+                    heading = start_states(start, options.order.heading, entry, family)[0][0]
                 here = np.array([*(start or (0.0, 0.0)), heading, 0.0])
                 before = float(begin[head])
             else:

@@ -176,7 +176,7 @@ def ordering_problem(
         costs = EuclidCosts(ways.exit[:, :3], ways.entry[:, :3])
     begin = np.zeros(0)
     if start is not None and family.headings:
-        begin = start_states(start, ways.entry, family)[1]
+        begin = start_states(start, options.order.heading, ways.entry, family)[1]
     elif start is not None:
         begin = np.linalg.norm(ways.entry[:, :3] - np.array([*start, 0.0]), axis=1)
     return OrderingProblem(

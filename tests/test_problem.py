@@ -219,7 +219,7 @@ def test_options_name_the_start_before_the_drawing() -> None:
 def test_start_headings_are_the_best_that_were_tried() -> None:
     entries = np.zeros((50, 5))
     entries[:, [0, 1, 3]] = np.random.default_rng(4).uniform(-3, 3, (50, 3))
-    headings, lengths = start_states((0.2, 0.1), entries, Family("dubins", 0.7))
+    headings, lengths = start_states((0.2, 0.1), None, entries, Family("dubins", 0.7))
     for heading, length, entry in zip(headings, lengths, entries[:, [0, 1, 3]], strict=True):
         assert dubins_path(array([0.2, 0.1, heading]), entry, 0.7).length == pytest.approx(length)
         for other in np.arange(36) * math.tau / 36:

@@ -52,7 +52,7 @@ Metric = Annotated[str | None, typer.Option(help="euclid, dubins, cc or auto.")]
 TimeLimit = Annotated[str | None, typer.Option(help="For ordering, e.g. 10s or 2min.")]
 Iterations = Annotated[int | None, typer.Option(help="Limit of ordering; with a seed repeatable.")]
 Seed = Annotated[int | None, typer.Option(help="Of everything random.")]
-Start = Annotated[str | None, typer.Option(help="Where the robot stands: X,Y in metres.")]
+Start = Annotated[str | None, typer.Option(help="Where the robot stands: X,Y or X,Y,HEADING (m, degrees).")]
 Entries = Annotated[int | None, typer.Option(help="Most entry vertices of a closed stroke.")]
 Avoid = Annotated[
     float | None, typer.Option("--avoid-finished", help="Metres worth a metre not driven over finished work.")
@@ -137,7 +137,7 @@ def settings_of(base: dict[str, Any], flags: dict[str, Any]) -> Options:
         width, height = _canvas(flags["canvas"])
         tables.setdefault("page", {}).update(width=width, height=height)
     if flags.get("start") is not None:
-        tables.setdefault("order", {})["start"] = _pair(flags["start"], "--start")
+        tables.setdefault("order", {}).update(pose(flags["start"], "--start"))
     if flags.get("areas") is not None:
         tables.setdefault("connect", {}).update(_areas(flags["areas"]))
         if flags.get("clearance") is not None:
@@ -199,11 +199,12 @@ def _canvas(text: str) -> tuple[float, float]:
         raise InputError(error.problem, "--canvas") from None
 
 
-def _pair(text: str, flag: str) -> tuple[str, str]:
+def pose(text: str, flag: str) -> dict[str, Any]:
+    """Settings of where the robot stands, from X,Y or X,Y,HEADING (a heading that is not given is free)."""
     parts = [part.strip() for part in text.split(",")]
-    if len(parts) != 2:
-        raise InputError(f"{text!r} is no place; expected X,Y", flag)
-    return parts[0], parts[1]
+    if len(parts) not in (2, 3):
+        raise InputError(f"{text!r} is no place; expected X,Y or X,Y,HEADING", flag)
+    return {"start": parts[:2], "heading": parts[2] if len(parts) == 3 else None}
 
 
 def _areas(file: Path) -> dict[str, Any]:

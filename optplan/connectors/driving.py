@@ -82,8 +82,11 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     here: FloatArray | None = None  # x, y, heading, curvature
     if start is not None and len(visits):
         first = visits.entry[:1]
-        sight = math.atan2(first[0, 1] - start[1], first[0, 0] - start[0])
-        heading = start_states(start, first, family)[0][0] if family.headings else sight
+        heading = options.order.heading
+        if family.headings:
+            heading = start_states(start, heading, first, family)[0][0]
+        elif heading is None:
+            heading = math.atan2(first[0, 1] - start[1], first[0, 0] - start[0])
         here = np.array([*start, heading, 0.0])
     for row in range(len(visits)):
         visit = visits[row]

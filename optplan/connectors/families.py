@@ -119,15 +119,20 @@ def family_of(robot: Robot, options: Options) -> Family:
     return Family(metric, 1 / limits.curvature, limits.sharpness, reversing)
 
 
-def start_states(start: tuple[float, float], entries: FloatArray, family: Family) -> tuple[FloatArray, FloatArray]:
+def start_states(
+    start: tuple[float, float], heading: float | None, entries: FloatArray, family: Family
+) -> tuple[FloatArray, FloatArray]:
     """Best heading (k,) at a start point for reaching entry states (k, 5), and the lengths (k,), m.
 
-    The robot is set down at its start by hand, so its heading there is free; START_HEADINGS of them are tried, and the
-    straight line of sight. Its wheels are straight there.
+    The robot is set down at its start by hand, so its heading there is free unless it is given; START_HEADINGS of them
+    are tried, and the straight line of sight. Its wheels are straight there.
     """
-    sight = np.arctan2(entries[:, 1] - start[1], entries[:, 0] - start[0])
-    around = np.linspace(0, 2 * math.pi, START_HEADINGS, endpoint=False)
-    tried = np.array([sight, *(np.full(len(entries), heading) for heading in around)])
+    if heading is None:
+        sight = np.arctan2(entries[:, 1] - start[1], entries[:, 0] - start[0])
+        around = np.linspace(0, 2 * math.pi, START_HEADINGS, endpoint=False)
+        tried = np.array([sight, *(np.full(len(entries), angle) for angle in around)])
+    else:
+        tried = np.full((1, len(entries)), heading)
     lengths = []
     for headings in tried:
         states = np.zeros((len(entries), 5))

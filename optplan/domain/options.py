@@ -78,6 +78,7 @@ class OrderOptions:
     entries : greatest number of vertices at which a closed stroke may be entered; None: every vertex, or 16 where
         headings count
     avoid : m between strokes that are worth a metre not driven over finished work; 0: finished work is no matter
+    heading : rad, where the robot faces at the start; None: it is set down as it suits
     """
 
     solver: str = "auto"
@@ -88,6 +89,7 @@ class OrderOptions:
     start: tuple[float, float] | None = None
     entries: int | None = None
     avoid: float = 0.0
+    heading: float | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.avoid, bool) or not 0 <= self.avoid <= MAX_NUMBER:
@@ -104,6 +106,11 @@ class OrderOptions:
             len(tuple(self.start)) != 2 or not all(abs(x) <= MAX_NUMBER for x in self.start)
         ):
             raise InputError(f"order start is {self.start}; expected two numbers of metres, at most {MAX_NUMBER:g}")
+        if self.heading is not None:
+            if self.start is None:
+                raise InputError("order heading says where the robot faces, but there is no start; expected both")
+            if isinstance(self.heading, bool) or not abs(self.heading) <= MAX_NUMBER:
+                raise InputError(f"order heading is {self.heading}; expected a finite number of radians")
         if self.entries is not None and self.entries < 1:
             raise InputError(f"order entries is {self.entries}; expected 1 or more")
 

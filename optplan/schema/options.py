@@ -53,6 +53,7 @@ class OrderModel(Model):
     iterations: int | None = Field(None, ge=0, description="iteration limit: with a seed a repeatable plan")
     seed: int = Field(0, ge=0, lt=2**31)
     start: tuple[Length, Length] | None = Field(None, description="where the robot stands")
+    heading: Angle | None = Field(None, description="where it faces there; free without it")
     entries: int | None = Field(None, ge=1, description="most vertices at which a closed stroke may be entered")
     avoid: float = Field(0.0, ge=0, description="metres worth a metre not driven over finished work")
 
@@ -121,7 +122,7 @@ def options_from(model: OptionsModel) -> Options:
 
 def options_model(options: Options) -> OptionsModel:
     """The record that describes options; angles carry their unit, as a bare number would mean degrees."""
-    cover = asdict(options.cover)
+    cover, heading = asdict(options.cover), options.order.heading
     cover["direction"] = f"{options.cover.direction!r} rad"
     cover["elements"] = {
         id: {**asdict(fill), "direction": None if fill.direction is None else f"{fill.direction!r} rad"}
@@ -131,7 +132,7 @@ def options_model(options: Options) -> OptionsModel:
         {
             "page": asdict(options.page),
             "cover": cover,
-            "order": asdict(options.order),
+            "order": {**asdict(options.order), "heading": None if heading is None else f"{heading!r} rad"},
             "connect": {**asdict(options.connect), "corner": f"{options.connect.corner!r} rad"},
             "time": asdict(options.time),
         }
