@@ -538,7 +538,9 @@ def export_command(
     to: Annotated[
         str,
         typer.Option(
-            "--to", "-t", help="csv: points with time and tool; txt: lines 'x y tool'; tsplib: the ordering problem."
+            "--to",
+            "-t",
+            help="csv: points in time; txt: lines 'x y tool'; tool: its commands; tsplib: the ordering problem.",
         ),
     ],
     out: OutFile = None,

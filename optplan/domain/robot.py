@@ -53,6 +53,7 @@ class Tool:
         one everything wider. Empty: stroke widths mean nothing and setting 1 draws everything.
     red_is_travel, green_is_start : drawing syntax of colours; where False, colours are layers
     fill : index of the setting that fills areas
+    on_delay, off_delay : from the command until the tool marks, and until it no longer does, s
     """
 
     settings: tuple[ToolSetting, ...]
@@ -62,6 +63,8 @@ class Tool:
     red_is_travel: bool = False
     green_is_start: bool = False
     fill: int = 1
+    on_delay: float = 0.0
+    off_delay: float = 0.0
 
     def __post_init__(self) -> None:
         if len(self.settings) < 2 or self.settings[0].width != 0:
@@ -79,6 +82,9 @@ class Tool:
             raise InputError("stroke widths must be above 0 and increase")
         if not 1 <= self.fill < len(self.settings):
             raise InputError(f"fill names tool setting {self.fill}; expected 1..{len(self.settings) - 1}")
+        for name in ("on_delay", "off_delay"):
+            if not 0 <= getattr(self, name) <= MAX_NUMBER:
+                raise InputError(f"{name} is {getattr(self, name)} s; expected 0 or more")
         if not (math.isfinite(self.right) and math.isfinite(self.ahead)):
             raise InputError("the tool's place is not finite")
 

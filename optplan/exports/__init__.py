@@ -43,6 +43,12 @@ def _txt(plan: Plan, spacing: float) -> str:
     return points_text(plan, spacing)
 
 
+def _tool(plan: Plan, _: float) -> str:
+    from optplan.exports.tool import tool_text
+
+    return tool_text(plan)
+
+
 def _tsplib(plan: Plan, _: float) -> str:
     from optplan.exports.tsplib import tsplib_text
 
@@ -54,6 +60,7 @@ FORMATS = {
     for form in (
         Format("csv", "equally spaced points with time, speed, heading, curvature and tool state", ".csv", _csv),
         Format("txt", "lines 'x y tool', y down, a blank line at every turn on the spot", ".txt", _txt),
+        Format("tool", "commands to the tool, ahead of each change by its delay", ".tool.csv", _tool),
         Format("tsplib", "the ordering problem of its strokes, for other solvers (GTSP or PCGTSP)", ".gtsp", _tsplib),
     )
 }

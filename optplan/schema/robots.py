@@ -31,6 +31,8 @@ class ToolModel(Model):
     red_is_travel: bool = False
     green_is_start: bool = False
     fill: str | None = Field(None, description="name of the setting that fills areas; without it, the widest")
+    on_delay: Duration = Field(0.0, description="from the command until the tool marks")
+    off_delay: Duration = Field(0.0, description="from the command until it no longer does")
 
 
 class DiffDriveModel(Model):
@@ -131,7 +133,17 @@ def _tool_from(model: ToolModel) -> Tool:
         fill = names.index(model.fill)
     else:
         raise InputError(f"fill names {model.fill!r}; expected one of {', '.join(names[1:])}")
-    return Tool(settings, model.right, model.ahead, widths, model.red_is_travel, model.green_is_start, fill)
+    return Tool(
+        settings,
+        model.right,
+        model.ahead,
+        widths,
+        model.red_is_travel,
+        model.green_is_start,
+        fill,
+        model.on_delay,
+        model.off_delay,
+    )
 
 
 def robot_model(robot: Robot) -> RobotModel:
@@ -153,6 +165,8 @@ def robot_model(robot: Robot) -> RobotModel:
             red_is_travel=tool.red_is_travel,
             green_is_start=tool.green_is_start,
             fill=tool.settings[tool.fill].name,
+            on_delay=tool.on_delay,
+            off_delay=tool.off_delay,
         ),
         mobility=_mobility_model(robot.mobility),
         canvas=None if canvas is None else CanvasModel(width=canvas.width, height=canvas.height, margin=canvas.margin),
