@@ -21,6 +21,7 @@ from optplan.cli.settings import (
     ConstantSpeed,
     Corner,
     Direction,
+    Drying,
     ElementFill,
     Entries,
     EntryVertex,
@@ -132,6 +133,7 @@ def plan_command(
     start: Start = None,
     entries: Entries = None,
     avoid: Avoid = None,
+    drying: Drying = None,
     corner: Corner = None,
     areas: Areas = None,
     on_canvas: OnCanvas = None,
@@ -370,6 +372,7 @@ def order(
     start: Start = None,
     entries: Entries = None,
     avoid: Avoid = None,
+    drying: Drying = None,
     areas: Areas = None,
     on_canvas: OnCanvas = None,
     clearance: Clearance = None,
@@ -382,7 +385,7 @@ def order(
     flags = dict(locals())
     file = shipped_or_file(file)
     if is_instance(file):
-        for name in ("metric", "start", "entries", "avoid", "areas", "on_canvas", "clearance", "reversing"):
+        for name in ("metric", "start", "entries", "avoid", "drying", "areas", "on_canvas", "clearance", "reversing"):
             if flags[name] is not None:
                 flag = "--avoid-finished" if name == "avoid" else f"--{name.replace('_', '-')}"
                 raise InputError("says nothing about an instance of a library, which has its costs", flag)

@@ -57,6 +57,7 @@ Entries = Annotated[int | None, typer.Option(help="Most entry vertices of a clos
 Avoid = Annotated[
     float | None, typer.Option("--avoid-finished", help="Metres worth a metre not driven over finished work.")
 ]
+Drying = Annotated[str | None, typer.Option(help="Time after which finished work may be driven over, e.g. 10min.")]
 Corner = Annotated[str | None, typer.Option(help="Sharper vertices are corners, degrees.")]
 Areas = Annotated[
     Path | None,
@@ -93,6 +94,7 @@ _PLACES = {
     "seed": ("order", "seed"),
     "entries": ("order", "entries"),
     "avoid": ("order", "avoid"),
+    "drying": ("order", "drying"),
     "corner": ("connect", "corner"),
     "on_canvas": ("connect", "on_canvas"),
     "clearance": ("connect", "clearance"),

@@ -79,6 +79,7 @@ class OrderOptions:
         headings count
     avoid : m between strokes that are worth a metre not driven over finished work; 0: finished work is no matter
     heading : rad, where the robot faces at the start; None: it is set down as it suits
+    drying : s after which finished work may be driven over; None: never
     """
 
     solver: str = "auto"
@@ -90,13 +91,14 @@ class OrderOptions:
     entries: int | None = None
     avoid: float = 0.0
     heading: float | None = None
+    drying: float | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.avoid, bool) or not 0 <= self.avoid <= MAX_NUMBER:
             raise InputError(f"order avoid is {self.avoid}; expected a number from 0 to {MAX_NUMBER:g}")
         if self.metric not in METRICS:
             raise InputError(f"there is no metric {self.metric!r}; expected one of {', '.join(METRICS)}")
-        _above_zero("order", seconds=self.seconds)
+        _above_zero("order", seconds=self.seconds, drying=self.drying)
         _whole("order", iterations=self.iterations, seed=self.seed, entries=self.entries)
         if self.iterations is not None and not 0 <= self.iterations < 2**62:
             raise InputError(f"order iterations is {self.iterations}; expected 0..2^62 - 1")

@@ -13,7 +13,7 @@ COLUMNS = ("t", "s", "tool", "code", "reached")
 
 
 def tool_text(plan: Plan) -> str:
-    """One command a line: when (s) and where along the path (m) it is given, the setting, its code, and where it holds (m).
+    """One command a line: when (s) and where (m) it is given, its setting and code, and where (m) it holds.
 
     Raises
     ------

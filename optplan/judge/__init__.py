@@ -10,7 +10,7 @@ from optplan.domain.errors import InputError
 from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check, Report
 from optplan.domain.result import Plan
-from optplan.judge import _areas, _continuity, _coverage, _finished, _gears, _motion, _ordering, _strokes
+from optplan.judge import _areas, _continuity, _coverage, _finished, _gears, _motion, _ordering, _strokes, _wheels
 from optplan.judge._findings import deviation_limit, page_tolerance, unchecked
 from optplan.judge._integrate import integrate
 from optplan.judge._speeds import speeds
@@ -61,7 +61,7 @@ def verify(plan: Plan) -> Report:
         checks.append(_strokes.visits(path, samples, plan.visits))
     checks.append(_strokes.tool(path, robot))
     if cover is None:
-        names = ["canvas", "margin", _areas.NAME, *_coverage.NAMES, _finished.NAME]
+        names = ["canvas", "margin", _areas.NAME, *_coverage.NAMES, _finished.NAME, _wheels.NAME]
         checks += unchecked(names, "the plan has no strokes")
     else:
         checks += [
@@ -69,7 +69,8 @@ def verify(plan: Plan) -> Report:
             _areas.areas(path, samples, cover, options),
         ]
         covered, areas = _coverage.coverage(path, samples, cover, robot, limit, exact)
-        checks += [*covered, _finished.over_finished(path, samples, cover, robot)]
+        wheels = _wheels.wheels_over_finished(path, samples, cover, robot, options, plan.trajectory)
+        checks += [*covered, _finished.over_finished(path, samples, cover, robot), wheels]
     if plan.trajectory is None or profile is None:
         checks += unchecked(_motion.NAMES, "the plan has no speeds")
     else:

@@ -30,7 +30,7 @@ def over_finished(path: Path, samples: Samples, cover: Cover, robot: Robot) -> C
     driven = np.flatnonzero((path.stroke >= 0) & (path.stroke < len(strokes)))
     last[path.stroke[driven]] = driven  # later rows overwrite earlier ones
     marked = [k for k, stroke in enumerate(strokes) if RAISED < stroke.tool < len(widths) and last[k] < len(path)]
-    marks = np.array([_mark(shapely, strokes[k].closed_points, widths[strokes[k].tool]) for k in marked], dtype=object)
+    marks = np.array([mark(shapely, strokes[k].closed_points, widths[strokes[k].tool]) for k in marked], dtype=object)
     tree, made = shapely.STRtree(marks), last[np.array(marked, dtype=np.int64)]
 
     total, worst, place, times = 0.0, 0.0, None, 0
@@ -48,7 +48,7 @@ def over_finished(path: Path, samples: Samples, cover: Cover, robot: Robot) -> C
         total += metres
         times += metres > 0
         if metres > worst:
-            worst, place = metres, _middle(shapely, over)
+            worst, place = metres, middle(shapely, over)
     return noted(NAME, total, "m", f"The tool is carried over finished work on {count_of(times, 'way')}.", place)
 
 
@@ -59,12 +59,12 @@ def _carried(path: Path) -> list[tuple[int, int]]:
     return [(first, end) for first, end in edges.tolist() if path.length[first:end].any()]
 
 
-def _mark(shapely: Any, points: Any, width: float) -> Any:
+def mark(shapely: Any, points: Any, width: float) -> Any:
     line = shapely.points(points[0, :2]) if len(points) == 1 else shapely.linestrings(points[:, :2])
     return shapely.buffer(line, width / 2)
 
 
-def _middle(shapely: Any, over: Any) -> Place:
+def middle(shapely: Any, over: Any) -> Place:
     part = max(shapely.get_parts(over), key=lambda line: line.length)
     point = shapely.line_interpolate_point(part, 0.5, normalized=True)
     return float(point.x), float(point.y)

@@ -54,6 +54,7 @@ class OrderModel(Model):
     seed: int = Field(0, ge=0, lt=2**31)
     start: tuple[Length, Length] | None = Field(None, description="where the robot stands")
     heading: Angle | None = Field(None, description="where it faces there; free without it")
+    drying: Duration | None = Field(None, description="after it finished work may be driven over; never without it")
     entries: int | None = Field(None, ge=1, description="most vertices at which a closed stroke may be entered")
     avoid: float = Field(0.0, ge=0, description="metres worth a metre not driven over finished work")
 

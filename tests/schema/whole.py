@@ -61,9 +61,9 @@ def jobs() -> dict[str, Job]:
 OPTIONS = Options(
     PageOptions(30.0, 20.0, THIRD, 0.01),
     CoverOptions(0.1 + 0.2, 0.3, 0.2, False, (("a", FillSettings(THIRD, None, 0.1)), ("b", FillSettings()))),
-    OrderOptions("search", "euclid", 2.5, 100, 7, (1.5, -THIRD), 12, heading=THIRD),
+    OrderOptions("search", "euclid", 2.5, 100, 7, (1.5, -THIRD), 12, heading=THIRD, drying=2.5),
     ConnectOptions(math.radians(33.3), reversing=True),
-    TimeOptions(0.3, THIRD),
+    TimeOptions(0.3, THIRD, 2.5, THIRD),
 )
 
 
