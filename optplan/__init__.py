@@ -34,6 +34,7 @@ _HOMES = {
     "save_plan": "optplan.schema.plans",
     "draw": "optplan.plot",
     "draw_convergence": "optplan.plot",
+    "simulate": "optplan.simulation",
     "compare_solvers": "optplan.compare",
     "load_case": "optplan.compare",
     "read_tsplib": "optplan.ordering.tsplib",
@@ -47,6 +48,7 @@ _HOMES = {
     "OrderOptions": "optplan.domain.options",
     "ConnectOptions": "optplan.domain.options",
     "TimeOptions": "optplan.domain.options",
+    "DriveOptions": "optplan.simulation.options",
     "FillSettings": "optplan.domain.job",
     "Drawing": "optplan.domain.job",
     "Plan": "optplan.domain.result",
@@ -99,6 +101,8 @@ if TYPE_CHECKING:
     from optplan.robots import robot_names as robot_names
     from optplan.schema.plans import load_plan as load_plan
     from optplan.schema.plans import save_plan as save_plan
+    from optplan.simulation import simulate as simulate
+    from optplan.simulation.options import DriveOptions as DriveOptions
     from optplan.timing.trapezoid import profile as profile
 
 __all__ = [*_HOMES]

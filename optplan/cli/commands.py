@@ -13,6 +13,7 @@ from optplan.cli import output
 from optplan.cli.settings import (
     Areas,
     Avoid,
+    Beside,
     Boundary,
     CanvasSize,
     Clearance,
@@ -23,20 +24,29 @@ from optplan.cli.settings import (
     ElementFill,
     Entries,
     EntryVertex,
+    HeadingNoise,
+    Ideal,
     InnerFirst,
     Inset,
     Iterations,
+    Lag,
     Links,
+    Lookahead,
     Margin,
+    Mass,
     Metric,
+    Motor,
+    Noise,
     OnCanvas,
     RobotName,
     Seed,
+    Slip,
     SolverName,
     Spacing,
     Start,
     TimeLimit,
     Tolerance,
+    Tracker,
     TransitSpeed,
     WorkSpeed,
     config_text,
@@ -479,6 +489,33 @@ def show(
         target = out or file.with_suffix(".png")
         op.draw(plan, target, overwrite=force, dpi=dpi)
     _tell_file(target, json)
+
+
+@app.command("simulate")
+def simulate_command(
+    file: PlanFile,
+    out: Annotated[
+        Path | None, typer.Option("--output", "-o", help="CSV of the drive, a line a control step.", show_default=False)
+    ] = None,
+    tracker: Tracker = "path-frame",
+    ideal: Ideal = False,
+    lag: Lag = None,
+    mass: Mass = None,
+    motor: Motor = None,
+    slip: Slip = None,
+    noise: Noise = None,
+    heading_noise: HeadingNoise = None,
+    seed: Seed = None,
+    lookahead: Lookahead = None,
+    beside: Beside = False,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+) -> None:
+    """Let a simulated robot drive a plan: how far off it gets, and what its wheels do."""
+    from optplan.cli.driving import simulate_and_print
+
+    simulate_and_print(file, out, dict(locals()), force, quiet, json)
 
 
 @app.command("export")

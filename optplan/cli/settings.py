@@ -69,6 +69,19 @@ Clearance = Annotated[str | None, typer.Option(help="Of connectors from areas an
 WorkSpeed = Annotated[str | None, typer.Option(help="With the tool down, m/s.")]
 TransitSpeed = Annotated[str | None, typer.Option(help="With the tool up, m/s.")]
 
+Tracker = Annotated[str, typer.Option(help="path-frame or pure-pursuit.")]
+Ideal = Annotated[bool, typer.Option("--ideal", help="No lag, no slip, no noise.")]
+Lag = Annotated[str | None, typer.Option(help="Time constant of a wheel's speed, e.g. 50ms.")]
+Mass = Annotated[float | None, typer.Option(help="Of the robot, kg; gives an estimate of the energy.")]
+Motor = Annotated[float | None, typer.Option(help="Torque per lacking wheel speed, N m s/rad; gives the lag.")]
+Slip = Annotated[float | None, typer.Option(help="Standard deviation of each wheel's slip, e.g. 0.02.")]
+Noise = Annotated[str | None, typer.Option(help="Standard deviation of the measured place, e.g. 1cm.")]
+HeadingNoise = Annotated[str | None, typer.Option(help="Standard deviation of the measured heading, degrees.")]
+Lookahead = Annotated[str | None, typer.Option(help="Of pure pursuit, e.g. 50cm.")]
+Beside = Annotated[
+    bool, typer.Option("--tool-beside/--tool-on-path", help="Whether the tool sits beside the point on the path.")
+]
+
 _PLACES = {
     "margin": ("page", "margin"),
     "tolerance": ("page", "tolerance"),
