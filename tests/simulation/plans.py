@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ Piece = tuple[float, float, float, float]
 """length m, curvature 1/m, sharpness 1/m^2, rad turned (a stop has length 0)"""
 
 
-def rake(**changes: float) -> Robot:
+def rake(**changes: Any) -> Robot:
     """The beach rake, with other wheels or speeds if asked."""
     robot = op.load_robot("beach-rake")
     assert isinstance(robot.mobility, DiffDrive)
@@ -65,12 +66,7 @@ CORNERS = path_of(
     [1, 0, 2, 0, 3],
 )
 """Lines with turns on the spot between them, each drawn with another setting."""
-BEND = path_of(
-    [(1.0, 0.0, 0.0, 0.0), (0.5, 0.0, 1.6, 0.0), (2.0, 0.8, 0.0, 0.0), (0.5, 0.8, -1.6, 0.0), (1.0, 0, 0, 0)]
-)
+BEND = path_of([(1, 0, 0, 0), (0.5, 0, 1.6, 0), (2.0, 0.8, 0, 0), (0.5, 0.8, -1.6, 0), (1, 0, 0, 0)])
 """A line, a clothoid into an arc to the left, and out of it."""
-EIGHT = path_of(
-    [(2.0, 0.0, 0.0, 0.0), (0.5, 0.0, 2.0, 0.0)]
-    + [(1.5 * math.pi - 0.5, 1.0, 0.0, 0.0), (0.5, 1.0, -2.0, 0.0), (2.0, 0.0, 0.0, 0.0)]
-)
+EIGHT = path_of([(2, 0, 0, 0), (0.5, 0, 2, 0), (1.5 * math.pi - 0.5, 1, 0, 0), (0.5, 1, -2, 0), (2, 0, 0, 0)])
 """A loop that crosses itself."""
