@@ -34,6 +34,7 @@ _HOMES = {
     "save_plan": "optplan.schema.plans",
     "draw": "optplan.plot",
     "draw_convergence": "optplan.plot",
+    "animate": "optplan.plot",
     "simulate": "optplan.simulation",
     "compare_solvers": "optplan.compare",
     "load_case": "optplan.compare",
@@ -93,6 +94,7 @@ if TYPE_CHECKING:
     from optplan.ordering.tsplib import read_tsplib as read_tsplib
     from optplan.pipeline import plan as plan
     from optplan.pipeline import plan_from as plan_from
+    from optplan.plot import animate as animate
     from optplan.plot import draw as draw
     from optplan.plot import draw_convergence as draw_convergence
     from optplan.problem import ordering_problem as ordering_problem

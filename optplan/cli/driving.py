@@ -48,6 +48,37 @@ def driven(plan: Plan, options: DriveOptions, quiet: bool) -> Drive:
         return op.simulate(plan, options, tell, StopRule(cancelled=lambda: bool(wished)))
 
 
+def unwanted(flags: dict[str, Any]) -> None:
+    """Refuse flags of `optplan show` that would change nothing. Raises InputError."""
+    if flags["animate"] and flags["convergence"]:
+        raise InputError("is no film; expected one of --animate and --convergence", "--convergence")
+    asked = [name for name in ("frames", "simulated", "duration", "speed_up", "fps", "size") if flags[name]]
+    if asked and not flags["animate"]:
+        raise InputError("is about a film; say --animate, too", f"--{asked[0].replace('_', '-')}")
+    drive = [name for name in ("ideal", "lag", "slip", "noise", "seed", "beside") if flags[name]]
+    drive += ["tracker"] if flags["tracker"] != "path-frame" else []
+    if drive and not flags["simulated"]:
+        flag = "tool-beside" if drive[0] == "beside" else drive[0]
+        raise InputError("is about a simulated drive; say --simulated, too", f"--{flag}")
+
+
+def film(plan: Plan, file: Path, out: Path | None, flags: dict[str, Any], force: bool, quiet: bool) -> Path:
+    """Write the film that the flags of `optplan show` ask for; returns where."""
+    import optplan as op
+
+    target = out or (file.with_name(f"{file.stem}-frames") if flags["frames"] else file.with_suffix(".gif"))
+    if flags["frames"] and target.suffix.lower() not in ("", ".json"):
+        raise InputError("is no place for frames; expected a folder, or a .json file", str(target))
+    chosen = {name: flags[name] for name in ("speed_up", "fps", "size", "dpi") if flags[name] is not None}
+    if flags["duration"] is not None:
+        chosen["seconds"] = duration(flags["duration"])
+    if flags["simulated"]:
+        chosen["drive"] = driven(plan, drive_options(flags), quiet)
+    with output.progress_bar(quiet) as tell:
+        op.animate(plan, target, overwrite=force, progress=tell, **chosen)
+    return target
+
+
 def simulate_and_print(
     file: Path, out: Path | None, flags: dict[str, Any], force: bool, quiet: bool, json: bool
 ) -> None:

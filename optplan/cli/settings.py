@@ -82,6 +82,14 @@ Beside = Annotated[
     bool, typer.Option("--tool-beside/--tool-on-path", help="Whether the tool sits beside the point on the path.")
 ]
 
+Animate = Annotated[bool, typer.Option("--animate", help="A film of the robot driving the plan.")]
+Frames = Annotated[bool, typer.Option("--frames", help="The film as a folder of PNG files, or with -o x.json as JSON.")]
+Simulated = Annotated[bool, typer.Option("--simulated", help="The film of a simulated drive, not of the planned one.")]
+FilmDuration = Annotated[str | None, typer.Option("--duration", help="Of the film, e.g. 20s; default: 12s at most.")]
+SpeedUp = Annotated[float | None, typer.Option(help="How much faster than the robot the film is.")]
+Fps = Annotated[float | None, typer.Option(help="Frames a second of the film; default: 15.")]
+FilmSize = Annotated[float | None, typer.Option("--size", help="Longer side of the film, inches; default: 8.")]
+
 _PLACES = {
     "margin": ("page", "margin"),
     "tolerance": ("page", "tolerance"),
