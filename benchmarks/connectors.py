@@ -19,6 +19,7 @@ from optplan.domain.arrays import FloatArray
 from optplan.geometry.cc import Family, cc_lengths, cc_matrix, cc_path
 from optplan.geometry.curves import Curve
 from optplan.geometry.dubins import dubins_lengths
+from optplan.geometry.reversing import reeds_shepp_lengths, reversing_lengths
 
 LISTS = DATA / "connectors"
 KAPPA = 1.125
@@ -56,6 +57,25 @@ def speeds(count: int = 100_000) -> Iterator[Row]:
         yield Row(f"Dubins length, beside q = {q:.2f}", dubins, 0.25, "us")
         yield Row(f"reference family, q = {q:.2f}", reference / dubins, 2.5, "x", "of the Dubins time")
         yield Row(f"full family, q = {q:.2f}", full, 10.0, "us", f"{full / dubins:.0f} x the Dubins time")
+
+
+def reversing(count: int = 20_000) -> Iterator[Row]:
+    """Microseconds a query of connectors that change gear, and how much shorter they are."""
+    starts, ends = queries(count, 0), queries(count, 1)
+    poses = starts[:, :3], ends[:, :3]
+    scale = 1e6 / count
+    reeds_shepp_lengths(starts[:9, :3], ends[:9, :3], 1 / KAPPA)
+    plain = scale * used(lambda: reeds_shepp_lengths(*poses, 1 / KAPPA))
+    shorter = float((reeds_shepp_lengths(*poses, 1 / KAPPA) / dubins_lengths(*poses, 1 / KAPPA)).mean())
+    yield Row("Reeds-Shepp length", plain, 6.0, "us", f"mean length {shorter:.3f} of Dubins")
+    for sharpness in SHARPNESSES:
+        q = KAPPA**2 / sharpness
+        reversing_lengths(starts[:9], ends[:9], KAPPA, sharpness)
+        seconds = used(lambda: reversing_lengths(starts, ends, KAPPA, sharpness), 3)  # noqa: B023
+        yield Row(f"reversing, q = {q:.2f}", scale * seconds, 50.0, "us")
+        ratio = reversing_lengths(starts, ends, KAPPA, sharpness) / cc_lengths(starts, ends, KAPPA, sharpness)
+        yield Row(f"reversing over forwards, q = {q:.2f}", float(ratio.mean()), 0.85, "", "mean length")
+        yield Row("longer than forwards, queries", float((ratio > 1 + 1e-8).sum()), 0, "")
 
 
 def matrices(size: int = 2000, sharpness: float = 2.1) -> Iterator[Row]:
@@ -164,7 +184,7 @@ def ends(count: int = 3000) -> Iterator[Row]:
 def main() -> int:
     """Print the table; 0 when every target is met."""
     met = True
-    for part in (lengths(), ends(), speeds(), matrices(), optimised()):
+    for part in (lengths(), ends(), speeds(), reversing(), matrices(), optimised()):
         for row in part:
             good = row.measured <= row.target
             met = met and good

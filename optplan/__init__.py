@@ -26,7 +26,7 @@ _HOMES = {
     "ordering_problem": "optplan.problem",
     "solve": "optplan.ordering",
     "connect": "optplan.connectors.driving",
-    "profile": "optplan.timing.trapezoid",
+    "profile": "optplan.timing.fastest",
     "verify": "optplan.judge",
     "plan": "optplan.pipeline",
     "plan_from": "optplan.pipeline",
@@ -105,7 +105,7 @@ if TYPE_CHECKING:
     from optplan.schema.plans import save_plan as save_plan
     from optplan.simulation import simulate as simulate
     from optplan.simulation.options import DriveOptions as DriveOptions
-    from optplan.timing.trapezoid import profile as profile
+    from optplan.timing.fastest import profile as profile
 
 __all__ = [*_HOMES]
 

@@ -22,7 +22,7 @@ from optplan.judge import verify
 from optplan.ordering import solve
 from optplan.problem import ordering_problem, traversals
 from optplan.robots import load_robot
-from optplan.timing.trapezoid import profile
+from optplan.timing.fastest import profile
 
 STAGES = ("cover", "order", "connect", "time", "verify")
 """What a plan goes through, in order."""

@@ -20,7 +20,8 @@ from optplan.domain.stroke import Stroke, Traversals
 DUBINS_ENTRIES = 16
 """Vertices at which a closed stroke may be entered when headings count, unless the options say otherwise."""
 MOST_CURVED = 3000
-"""Ways of driving under continuous curvature: all connectors between them are computed, which takes 100 s at 10 us."""
+"""Ways of driving under continuous curvature or with reversing: all connectors between them are computed, which takes
+100 s at 10 us."""
 
 
 def traversals(
@@ -155,21 +156,18 @@ def ordering_problem(
     family = family_of(robot, options)
     start = _start(cover, options)
     costs: ArcCosts
-    if family.metric == "cc":
-        from optplan.geometry.cc import cc_matrix
-
+    if family.metric == "cc" or family.reversing:
         if len(ways) > MOST_CURVED:
+            what = f"the metric {family.metric!r}{' with reversing' if family.reversing else ''}"
             raise LimitError(
-                f"{len(ways)} ways of driving the strokes; the metric 'cc' takes at most {MOST_CURVED}: "
-                "offer fewer entries, or take 'dubins'"
+                f"{len(ways)} ways of driving the strokes; {what} takes at most {MOST_CURVED}: "
+                "offer fewer entries, or take 'dubins' without reversing"
             )
-        flat = [0, 1, 3, 4]
 
         def told(share: float) -> None:
             progress(Progress("order", share, message="lengths of connectors"))
 
-        states = family.eased(ways.exit)[:, flat], family.eased(ways.entry)[:, flat]
-        costs = MatrixCosts(cc_matrix(*states, 1 / family.radius, family.sharpness, told=told))
+        costs = MatrixCosts(family.matrix(ways.exit, ways.entry, told))
     elif family.metric == "dubins":
         from optplan.geometry.dubins import dubins_lengths
 

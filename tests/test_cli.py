@@ -368,3 +368,13 @@ def test_compare_prints_a_table_and_writes_all_runs(run: Runner) -> None:
     wrong = run("compare", "drawings/logo", "-s", "best")
     assert wrong.code == 2
     assert "there is no solver 'best'" in wrong.err
+
+
+def test_reversing_is_for_robots_that_can(run: Runner, two: str) -> None:
+    refused = run("plan", two, "--robot", "beach-rake", "--metric", "cc", "--reversing", "-q")
+    assert refused.code == 2
+    assert "beach-rake does not drive backwards" in refused.err
+    done = run("plan", two, "--robot", "line-marker", "--metric", "dubins", "--reversing", "--json", "-q")
+    assert done.code == 0, done.err
+    config = run("plan", two, "--reversing", "--print-config")
+    assert "reversing = true" in config.out

@@ -43,6 +43,7 @@ from optplan.cli.settings import (
     Motor,
     Noise,
     OnCanvas,
+    Reversing,
     RobotName,
     Seed,
     Simulated,
@@ -148,6 +149,7 @@ def plan_command(
     areas: Areas = None,
     on_canvas: OnCanvas = None,
     clearance: Clearance = None,
+    reversing: Reversing = None,
     work_speed: WorkSpeed = None,
     transit_speed: TransitSpeed = None,
 ) -> None:
@@ -381,6 +383,7 @@ def order(
     areas: Areas = None,
     on_canvas: OnCanvas = None,
     clearance: Clearance = None,
+    reversing: Reversing = None,
 ) -> None:
     """Order: which stroke after which, entered where."""
     from optplan.cli.ordering import is_instance, order_instance
@@ -389,7 +392,7 @@ def order(
     flags = dict(locals())
     file = shipped_or_file(file)
     if is_instance(file):
-        for name in ("metric", "start", "entries", "avoid", "areas", "on_canvas", "clearance"):
+        for name in ("metric", "start", "entries", "avoid", "areas", "on_canvas", "clearance", "reversing"):
             if flags[name] is not None:
                 flag = "--avoid-finished" if name == "avoid" else f"--{name.replace('_', '-')}"
                 raise InputError("says nothing about an instance of a library, which has its costs", flag)
@@ -433,6 +436,7 @@ def connect(
     areas: Areas = None,
     on_canvas: OnCanvas = None,
     clearance: Clearance = None,
+    reversing: Reversing = None,
 ) -> None:
     """Connect: the path along all strokes and between them."""
     _stage("connect", file, out, dict(locals()), rest, force, quiet, json)

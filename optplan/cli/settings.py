@@ -66,6 +66,10 @@ OnCanvas = Annotated[
     bool | None, typer.Option("--on-canvas/--off-canvas", help="Connectors stay on the canvas, or may leave it.")
 ]
 Clearance = Annotated[str | None, typer.Option(help="Of connectors from areas and border, e.g. 30cm.")]
+Reversing = Annotated[
+    bool | None,
+    typer.Option("--reversing/--forwards", help="Connectors may be driven backwards, by a robot that can."),
+]
 WorkSpeed = Annotated[str | None, typer.Option(help="With the tool down, m/s.")]
 TransitSpeed = Annotated[str | None, typer.Option(help="With the tool up, m/s.")]
 
@@ -108,6 +112,7 @@ _PLACES = {
     "corner": ("connect", "corner"),
     "on_canvas": ("connect", "on_canvas"),
     "clearance": ("connect", "clearance"),
+    "reversing": ("connect", "reversing"),
     "work_speed": ("time", "work_speed"),
     "transit_speed": ("time", "transit_speed"),
 }

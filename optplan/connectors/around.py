@@ -212,12 +212,14 @@ def roads_of(cover: Cover, robot: Robot, options: Options) -> Roads | None:
 
     Raises
     ------
-    InputError : areas that are none, or a metric without ways around
+    InputError : areas that are none, a metric without ways around, or reversing
     """
     surroundings = surroundings_of(cover, options)
     if surroundings is None:
         return None
     family = family_of(robot, options)
+    if family.reversing:
+        raise InputError("ways around areas are driven forwards; expected areas, or reversing, not both")
     if family.metric == "dubins":
         raise InputError("there are no ways around areas under the metric 'dubins'; expected 'cc'")
     if family.metric == "cc":

@@ -20,6 +20,7 @@ from optplan.geometry.cc import cc_path
 from optplan.geometry.clothoids import clothoid_displacement
 from optplan.geometry.curves import Curve
 from optplan.geometry.dubins import dubins_path
+from optplan.geometry.reversing import reeds_shepp_path, reversing_path
 from optplan.geometry.rounding import Pieces, wrapped
 
 COINCIDENT = 1e-9
@@ -38,8 +39,11 @@ class _Rows(NamedTuple):
     dwell: list[FloatArray]
     tool: list[FloatArray]
     stroke: list[FloatArray]
+    gear: list[FloatArray]
 
-    def add(self, pieces: Pieces, tool: FloatArray | int, stroke: int, dwell: float = 0.0) -> None:
+    def add(
+        self, pieces: Pieces, tool: FloatArray | int, stroke: int, dwell: float = 0.0, gear: FloatArray | int = 1
+    ) -> None:
         count = len(pieces.length)
         self.start.append(np.column_stack([pieces.start, np.zeros(count)]))
         self.heading.append(pieces.heading)
@@ -50,14 +54,15 @@ class _Rows(NamedTuple):
         self.dwell.append(np.full(count, dwell))
         self.tool.append(np.broadcast_to(tool, count))
         self.stroke.append(np.full(count, stroke))
+        self.gear.append(np.broadcast_to(gear, count))
 
 
 def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | None = None) -> Path:
     """The path that drives traversals in the order given, with connectors between them.
 
     A robot that turns on the spot moves straight from stroke to stroke; one that does not drives Dubins paths of its
-    least radius at transit speed, or paths of continuous curvature within its limits at that speed. The tool is raised
-    on connectors, and while it turns at a corner.
+    least radius at transit speed, or paths of continuous curvature within its limits at that speed; with reversing,
+    such as change gear. The tool is raised on connectors, and while it turns at a corner.
 
     Parameters
     ----------
@@ -72,7 +77,7 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     options = options or Options()
     family, roads = family_of(robot, options), roads_of(cover, robot, options)
     turns = not math.isinf(robot.mobility.turn_rate)
-    rows = _Rows([], [], [], [], [], [], [], [], [])
+    rows = _Rows([], [], [], [], [], [], [], [], [], [])
     start = options.order.start or cover.start
     here: FloatArray | None = None  # x, y, heading, curvature
     if start is not None and len(visits):
@@ -95,7 +100,8 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
             begun, ended = family.eased(np.array([here, there]))
             if begun[3] != here[3]:
                 rows.add(_pieces([_turn(here, 0.0)]), RAISED, int(visits.stroke[row - 1]) if row else -1)
-            rows.add(connector(begun, ended, family, turns, roads), RAISED, -1)
+            joined = connector(begun, ended, family, turns, roads)
+            rows.add(joined.pieces, RAISED, -1, gear=joined.gear)
             if ended[3] != there[3]:
                 rows.add(_pieces([_turn(there, 0.0)]), RAISED, visit.stroke)
         # pins that stay down while the robot turns sharply would draw a swirl
@@ -108,7 +114,18 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     return _path(rows)
 
 
-def connector(here: FloatArray, there: FloatArray, family: Family, turns: bool, roads: Roads | None = None) -> Pieces:
+class Connector(NamedTuple):
+    """A movement between two states."""
+
+    pieces: Pieces
+    """in the direction of travel"""
+    gear: FloatArray | int = 1
+    """(n,) or one for all: 1 forwards, -1 backwards"""
+
+
+def connector(
+    here: FloatArray, there: FloatArray, family: Family, turns: bool, roads: Roads | None = None
+) -> Connector:
     """The movement between two states (4,) x, y, heading, curvature.
 
     `turns`: with turns on the spot at both ends. With a road map it keeps out of what is forbidden, if there is a way.
@@ -116,21 +133,32 @@ def connector(here: FloatArray, there: FloatArray, family: Family, turns: bool, 
     if roads is not None:
         way = roads.between(here, there)
         if way.curves and way.source != "direct":
-            return _along(way.curves, here, there, turns and not family.headings)
+            return Connector(_along(way.curves, here, there, turns and not family.headings))
+    if family.reversing:
+        path = (
+            reversing_path(here, there, 1 / family.radius, family.sharpness)
+            if family.metric == "cc"
+            else reeds_shepp_path(here[:3], there[:3], family.radius)
+        )
+        return Connector(_placed(here, path.curvatures, path.sharpnesses, path.lengths, path.gears), path.gears)
     if family.metric == "dubins":
-        return _dubins(here, there, family.radius)
+        plain = dubins_path(here[:3], there[:3], family.radius)
+        curvatures, lengths = np.array(plain.curvatures), np.array(plain.lengths)
+        return Connector(_placed(here, curvatures, np.zeros(len(lengths)), lengths, np.ones(len(lengths))))
     if family.metric == "cc":
-        return _cc(here, there, family)
+        curve = cc_path(here, there, 1 / family.radius, family.sharpness)
+        forwards = np.ones(len(curve.lengths))
+        return Connector(_placed(here, curve.curvatures, curve.sharpnesses, curve.lengths, forwards))
     dx, dy = there[:2] - here[:2]
     distance = math.hypot(dx, dy)
     if distance <= COINCIDENT:
-        return _pieces([_turn(here, _short(there[2] - here[2]))] if turns else [])
+        return Connector(_pieces([_turn(here, _short(there[2] - here[2]))] if turns else []))
     heading = math.atan2(dy, dx)
     made: list[tuple[float, ...]] = [(here[0], here[1], heading, 0.0, distance, 0.0)]
     if turns:
         made.insert(0, _turn(here, _short(heading - here[2])))
         made.append(_turn(np.array([*there[:2], heading, 0.0]), _short(there[2] - heading)))
-    return _pieces(made)
+    return Connector(_pieces(made))
 
 
 def _along(curves: tuple[Curve, ...], here: FloatArray, there: FloatArray, turns: bool) -> Pieces:
@@ -149,25 +177,17 @@ def _along(curves: tuple[Curve, ...], here: FloatArray, there: FloatArray, turns
     return Pieces(table[:, :2], *table[:, 2:].T)
 
 
-def _dubins(here: FloatArray, there: FloatArray, radius: float) -> Pieces:
-    path = dubins_path(here[:3], there[:3], radius)
-    made: list[tuple[float, ...]] = []
-    x, y, heading = here[:3]
-    for curvature, length in zip(path.curvatures, path.lengths, strict=True):
-        made.append((x, y, heading, curvature, length, 0.0))
-        dx, dy = clothoid_displacement(*(np.array([value]) for value in (heading, curvature, 0.0, length)))
-        x, y, heading = x + dx[0], y + dy[0], heading + curvature * length
-    return _pieces(made)
-
-
-def _cc(here: FloatArray, there: FloatArray, family: Family) -> Pieces:
-    path = cc_path(here, there, 1 / family.radius, family.sharpness)
-    count = len(path.lengths)
-    turned = path.lengths * (path.curvatures + path.sharpnesses * path.lengths / 2)
-    heading = here[2] + np.concatenate([[0.0], np.cumsum(turned)])[:count]
-    dx, dy = clothoid_displacement(heading, path.curvatures, path.sharpnesses, path.lengths)
+def _placed(
+    here: FloatArray, curvatures: FloatArray, sharpnesses: FloatArray, lengths: FloatArray, gears: FloatArray
+) -> Pieces:
+    """Clothoids one after the other, from a state on; all arrays (k,)."""
+    turned = lengths * (curvatures + sharpnesses * lengths / 2)
+    heading = here[2] + np.cumsum(turned) - turned
+    # backwards, travel is where the body does not point
+    heading = np.where(gears > 0, heading, heading + math.pi)
+    dx, dy = clothoid_displacement(heading, curvatures, sharpnesses, lengths)
     start = here[:2] + np.column_stack([np.cumsum(dx) - dx, np.cumsum(dy) - dy])
-    return Pieces(start, heading, path.curvatures, path.lengths, np.zeros(count), path.sharpnesses)
+    return Pieces(start, heading, curvatures, lengths, np.zeros(len(lengths)), sharpnesses)
 
 
 def _turn(at: FloatArray, angle: float) -> tuple[float, ...]:
@@ -200,7 +220,7 @@ def _path(rows: _Rows) -> Path:
     columns = [np.concatenate(column) if column else np.zeros(0) for column in rows]
     start = columns[0].reshape(-1, 3)
     heading, curvature, length, turn, sharpness, dwell = columns[1:7]
-    tool, stroke = (column.astype(np.int64) for column in columns[7:])
+    tool, stroke, gear = (column.astype(np.int64) for column in columns[7:])
     keep = (length > 0) | (turn != 0) | (stroke >= 0)
     zero = np.zeros(int(keep.sum()))
     return Path(
@@ -214,4 +234,5 @@ def _path(rows: _Rows) -> Path:
         dwell[keep],
         tool[keep],
         stroke[keep],
+        gear=gear[keep],
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -37,6 +38,8 @@ class Family(NamedTuple):
     """least turning radius, m ("dubins", "cc")"""
     sharpness: float = math.inf
     """greatest change of curvature a metre, 1/m^2 ("cc")"""
+    reversing: bool = False
+    """whether they may be driven backwards: "dubins" then stands for Reeds-Shepp paths, "cc" for such with cusps"""
 
     @property
     def headings(self) -> bool:
@@ -57,17 +60,35 @@ class Family(NamedTuple):
 
     def lengths(self, exits: FloatArray, entries: FloatArray) -> FloatArray:
         """Lengths (k,) m of connectors between states (k, 5) x, y, z, heading, curvature."""
+        exits, entries = self.eased(exits), self.eased(entries)
         if self.metric == "cc":
             from optplan.geometry.cc import cc_lengths
+            from optplan.geometry.reversing import reversing_lengths
 
-            exits, entries = self.eased(exits), self.eased(entries)
-            return cc_lengths(exits[:, _FLAT], entries[:, _FLAT], 1 / self.radius, self.sharpness)
+            batch = reversing_lengths if self.reversing else cc_lengths
+            return batch(exits[:, _FLAT], entries[:, _FLAT], 1 / self.radius, self.sharpness)
         if self.metric == "dubins":
             from optplan.geometry.dubins import dubins_lengths
+            from optplan.geometry.reversing import reeds_shepp_lengths
 
-            return dubins_lengths(exits[:, _FLAT[:3]], entries[:, _FLAT[:3]], self.radius)
+            plain = reeds_shepp_lengths if self.reversing else dubins_lengths
+            return plain(exits[:, _FLAT[:3]], entries[:, _FLAT[:3]], self.radius)
         lengths: FloatArray = np.linalg.norm(exits[:, :3] - entries[:, :3], axis=1)
         return lengths
+
+    def matrix(self, exits: FloatArray, entries: FloatArray, told: Callable[[float], None] | None = None) -> FloatArray:
+        """Lengths (n, m) m from every exit (n, 5) to every entry (m, 5), where headings count.
+
+        `told` is called with the share that is done.
+        """
+        from optplan.geometry.cc import cc_matrix
+        from optplan.geometry.reversing import reeds_shepp_matrix, reversing_matrix
+
+        exits, entries = self.eased(exits), self.eased(entries)
+        if self.metric == "dubins":
+            return reeds_shepp_matrix(exits[:, _FLAT[:3]], entries[:, _FLAT[:3]], self.radius, told=told)
+        batch = reversing_matrix if self.reversing else cc_matrix
+        return batch(exits[:, _FLAT], entries[:, _FLAT], 1 / self.radius, self.sharpness, told=told)
 
 
 _FLAT = [0, 1, 3, 4]
@@ -77,9 +98,15 @@ _FLAT = [0, 1, 3, 4]
 def family_of(robot: Robot, options: Options) -> Family:
     """The connectors that a plan has, within what the robot can drive at transit speed.
 
-    Raises InputError when the robot cannot turn, or when nothing limits its curvature or the rate of that.
+    Raises InputError when the robot cannot turn, when nothing limits its curvature or the rate of that, or when it is
+    to drive backwards and cannot.
     """
     metric = metric_of(robot, options)
+    reversing = options.connect.reversing
+    if reversing and not robot.mobility.reverses:
+        raise InputError(f"{robot.name} does not drive backwards; expected no reversing, or a robot that reverses")
+    if reversing and metric == "euclid":
+        raise InputError("reversing says nothing about the metric 'euclid'; expected 'dubins' or 'cc'")
     if metric == "euclid":
         return Family(metric)
     speed = options.time.transit_speed or robot.mobility.transit_speed
@@ -89,7 +116,7 @@ def family_of(robot: Robot, options: Options) -> Family:
         raise InputError(f"the metric {metric!r} needs a turning radius, but {robot.name} {reason}; expected 'euclid'")
     if metric == "cc" and not 0 < limits.sharpness < math.inf:
         raise InputError(f"the metric 'cc' needs a limit of sharpness, which {robot.name} has not; expected 'dubins'")
-    return Family(metric, 1 / limits.curvature, limits.sharpness)
+    return Family(metric, 1 / limits.curvature, limits.sharpness, reversing)
 
 
 def start_states(start: tuple[float, float], entries: FloatArray, family: Family) -> tuple[FloatArray, FloatArray]:

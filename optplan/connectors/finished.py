@@ -85,7 +85,7 @@ def connector_lines(exits: FloatArray, entries: FloatArray, family: Family) -> A
         return shapely.linestrings(np.stack([exits[:, :2], entries[:, :2]], axis=1))
     made = []
     for here, there in zip(exits[:, [0, 1, 3, 4]], entries[:, [0, 1, 3, 4]], strict=True):
-        pieces = connector(here, there, family, turns=False)
+        pieces = connector(here, there, family, turns=False).pieces
         points = [here[None, :2]]
         for k in range(len(pieces.length)):
             length, bend = pieces.length[k], pieces.curvature[k]

@@ -122,6 +122,7 @@ class ConnectOptions:
     keep_in : a polygon of (x, y) m that connectors do not leave
     on_canvas : whether connectors stay on the canvas
     clearance : between connectors and the borders of all of these, m
+    reversing : whether connectors may be driven backwards, by a robot that can; strokes are driven forwards
     """
 
     corner: float = math.radians(30)
@@ -129,12 +130,15 @@ class ConnectOptions:
     keep_in: Polygon | None = None
     on_canvas: bool = False
     clearance: float = 0.0
+    reversing: bool = False
 
     def __post_init__(self) -> None:
         if not 0 < self.corner <= math.pi:
             raise InputError(f"corner is {self.corner} rad; expected more than 0 and at most pi")
         if isinstance(self.clearance, bool) or not 0 <= self.clearance <= MAX_NUMBER:
             raise InputError(f"the clearance is {self.clearance} m; expected 0 to {MAX_NUMBER:g}")
+        if not isinstance(self.reversing, bool):
+            raise InputError(f"reversing is {self.reversing!r}; expected true or false")
         named = [(f"keep-out polygon {k}", ring) for k, ring in enumerate(self.keep_out)]
         for name, ring in [*named, *([("the keep-in polygon", self.keep_in)] if self.keep_in is not None else [])]:
             if len(ring) < 3:

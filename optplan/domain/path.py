@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,6 +16,9 @@ RAISED = 0
 @dataclass(frozen=True, eq=False)
 class Path:
     """Pieces in driving order, one a row.
+
+    Headings and curvatures are those of the direction of travel: where the gear is -1 the robot drives backwards, its
+    body points the other way, and its wheels too are turned the other way. A cusp is where the gear changes.
 
     A row of positive length is a clothoid: its curvature grows linearly, so lines and arcs are clothoids too; with an
     elevation it is a straight line in space. A row of length 0 is a stop: the robot turns on the spot, or works there.
@@ -33,6 +36,7 @@ class Path:
     tool : (n,) index of the tool setting; 0 is raised
     stroke : (n,) index of the stroke being driven; -1 between strokes
     orientation : (n, 2, 4) unit quaternions (w, x, y, z) of the tool at both ends of each piece, or None
+    gear : (n,) 1 forwards, -1 backwards; empty: all forwards
 
     Raises
     ------
@@ -50,6 +54,7 @@ class Path:
     tool: IntArray
     stroke: IntArray
     orientation: FloatArray | None = None
+    gear: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     def __post_init__(self) -> None:
         count = len(self.length)
@@ -58,6 +63,10 @@ class Path:
             object.__setattr__(self, name, frozen_floats(getattr(self, name), f"path {name}", (count,)))
         for name in ("tool", "stroke"):
             object.__setattr__(self, name, frozen_ints(getattr(self, name), f"path {name}", (count,)))
+        gear = self.gear if len(self.gear) else np.ones(count, dtype=np.int64)
+        object.__setattr__(self, "gear", frozen_ints(gear, "path gear", (count,)))
+        if (np.abs(self.gear) != 1).any():
+            raise InputError("a path piece has a gear that is neither 1 (forwards) nor -1 (backwards)")
         if (self.length < 0).any() or (self.dwell < 0).any():
             raise InputError("a path piece has a negative length or dwell time")
         moving = self.length > 0
@@ -78,6 +87,13 @@ class Path:
         """(n,) bool: rows at which the robot stands."""
         stops: BoolArray = self.length == 0
         return stops
+
+    @property
+    def cusps(self) -> IntArray:
+        """(c,) rows of pieces driven in another gear than the last piece before them."""
+        moving = np.flatnonzero(self.length > 0)
+        rows: IntArray = moving[1:][np.diff(self.gear[moving]) != 0]
+        return rows
 
     @property
     def offsets(self) -> FloatArray:

@@ -100,6 +100,8 @@ class DiffDrive:
     turns_on_spot : whether it may stop and turn
     turn_rate : angular speed of such a turn, rad/s
     radius, sharpness : chosen limits, m and 1/m^2; 0 and infinity leave what the wheels allow
+    lateral_acceleration : limit of v^2 |kappa|, m/s^2: it tips over or slides beyond
+    reverses : whether it may drive backwards
     """
 
     track: float
@@ -112,6 +114,8 @@ class DiffDrive:
     turn_rate: float = 1.0
     radius: float = 0.0
     sharpness: float = math.inf
+    lateral_acceleration: float = math.inf
+    reverses: bool = False
 
     def __post_init__(self) -> None:
         _positive(self, "track", "wheel_radius", "wheel_speed", "wheel_acceleration", "work_speed", "transit_speed")
@@ -120,6 +124,8 @@ class DiffDrive:
             raise InputError(f"radius is {self.radius} m; expected 0 or more")
         if not self.sharpness > 0:
             raise InputError(f"sharpness is {self.sharpness} 1/m^2; expected more than 0")
+        if not self.lateral_acceleration > 0:
+            raise InputError(f"lateral_acceleration is {self.lateral_acceleration} m/s^2; expected more than 0")
         rim = self.wheel_speed * self.wheel_radius
         for name in ("work_speed", "transit_speed"):
             if getattr(self, name) > rim:
@@ -150,6 +156,7 @@ class DiffDrive:
         sharpness = self.acceleration / (half * speed**2)
         if self.radius > 0:
             curvature = min(curvature, 1 / self.radius)
+        curvature = min(curvature, self.lateral_acceleration / speed**2)
         return CurvatureLimits(max(curvature, 0.0), min(sharpness, self.sharpness))
 
 
@@ -157,6 +164,7 @@ class _AnyCurve:
     """What mobilities share that need no heading: they turn without moving, at no cost of time."""
 
     turns_on_spot = True
+    reverses = False
     turn_rate = math.inf
     turn_acceleration = math.inf
 

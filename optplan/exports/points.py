@@ -19,7 +19,7 @@ SPACING = 0.05
 """Greatest distance between points unless asked otherwise, m."""
 MAX_POINTS = 5_000_000
 """Most points that an export may have."""
-COLUMNS = ("s", "t", "x", "y", "z", "heading", "curvature", "speed", "tool", "code", "stroke", "stop")
+COLUMNS = ("s", "t", "x", "y", "z", "heading", "curvature", "speed", "tool", "code", "stroke", "stop", "gear")
 
 
 class ToolPoints(NamedTuple):
@@ -35,6 +35,8 @@ class ToolPoints(NamedTuple):
 
 def csv_text(plan: Plan, spacing: float = SPACING) -> str:
     """Equally spaced points as CSV, one header line; m, s, rad, 1/m, m/s. `tool` holds from this point to the next.
+
+    Heading and curvature are those of travel; where `gear` is -1 the robot drives backwards.
 
     Raises
     ------
@@ -72,6 +74,7 @@ def csv_text(plan: Plan, spacing: float = SPACING) -> str:
                 settings[tool[k]].code,
                 strokes[owner] if 0 <= owner < len(strokes) else "",
                 int(stop[k]),
+                path.gear[piece],
             ]
         )
     return out.getvalue()
@@ -82,7 +85,7 @@ def points_text(plan: Plan, spacing: float = SPACING) -> str:
 
     Raises
     ------
-    InputError : the plan has no path yet, or the spacing is not above 0
+    InputError : the plan has no path yet, pieces of it are driven backwards, or the spacing is not above 0
     """
     return format_points(tool_points(plan, spacing))
 
@@ -92,6 +95,8 @@ def tool_points(plan: Plan, spacing: float = SPACING) -> ToolPoints:
     states, tool = _states(plan, spacing)
     path = plan.path
     assert path is not None  # _states has made sure
+    if (path.gear < 0).any():
+        raise InputError("the plan has pieces that are driven backwards, which bare points cannot say; expected csv")
     stop = path.is_stop[states.piece]
     stop[-1] = False
     canvas = None if plan.cover is None else plan.cover.canvas

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
+from optplan.geometry.threads import by_rows
 
 Family = Literal["full", "reference"]
 WORDS = ("LSL", "RSR", "LSR", "RSL", "LRL", "RLR")
@@ -62,7 +62,7 @@ def cc_path(start: FloatArray, end: FloatArray, curvature: float, sharpness: flo
     from optplan.geometry._kernels import cc as kernels
     from optplan.geometry._kernels.clothoid import clothoid_end
 
-    full = _checked(start, end, curvature, sharpness, family, 1)
+    full = checked(start, end, curvature, sharpness, family, 1)
     first, last = (np.array(state, dtype=np.float64) for state in (start, end))
     s = sharpness / curvature / curvature
     table, middles, turns = kernels.tables(s)
@@ -105,7 +105,7 @@ def cc_lengths(
     """Lengths (k,) m of `cc_path` between rows x, y, heading, curvature of (k, 4) arrays. Raises like `cc_path`."""
     from optplan.geometry._kernels import cc as kernels
 
-    full = _checked(starts, ends, curvature, sharpness, family, 2)
+    full = checked(starts, ends, curvature, sharpness, family, 2)
     if np.shape(starts) != np.shape(ends):
         raise InputError(f"{len(starts)} starts and {len(ends)} ends; expected as many of both")
     first, last = (np.ascontiguousarray(states, dtype=np.float64) for states in (starts, ends))
@@ -133,24 +133,17 @@ def cc_matrix(
     """
     from optplan.geometry._kernels import cc as kernels
 
-    full = _checked(exits, entries, curvature, sharpness, family, 2)
+    full = checked(exits, entries, curvature, sharpness, family, 2)
     first, last = (np.ascontiguousarray(states, dtype=np.float64) for states in (exits, entries))
     s = sharpness / curvature / curvature
     shared = kernels.tables(s)
     out = np.empty((len(first), len(last)))
     rows = max(1, SLICE // max(len(last), 1))
 
-    def fill(i: int) -> None:
-        kernels.matrix(first[i : i + rows], last, curvature, s, full, *shared, out[i : i + rows])
+    def fill(part: slice) -> None:
+        kernels.matrix(first[part], last, curvature, s, full, *shared, out[part])
 
-    pool = ThreadPoolExecutor(threads)
-    try:
-        for done, _ in enumerate(pool.map(fill, range(0, len(first), rows)), start=1):
-            if told is not None:
-                told(min(1.0, done * rows / len(first)))
-    finally:
-        # after a cancel, slices that have not begun are dropped
-        pool.shutdown(wait=True, cancel_futures=True)
+    by_rows(fill, len(first), rows, threads, told)
     return out
 
 
@@ -178,10 +171,10 @@ def _name(row: int, word: FloatArray) -> str:
     return ("S", first, first + last, f"{first}S{last}", first + middle + last)[int(word[1])] + "0"
 
 
-def _checked(
+def checked(
     start: FloatArray, end: FloatArray, curvature: float, sharpness: float, family: str, dimensions: int
 ) -> bool:
-    """Whether the full family is meant; InputError for what cannot be solved."""
+    """Whether the full family is meant; InputError for limits and states, in arrays of `dimensions`, that are none."""
     for name, limit, unit in (("curvature", curvature, "1/m"), ("sharpness", sharpness, "1/m^2")):
         if not (math.isfinite(limit) and limit > 0):
             raise InputError(f"the {name} limit is {limit} {unit}; expected a finite number above 0")

@@ -10,7 +10,7 @@ from optplan.domain.errors import InputError
 from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check, Report
 from optplan.domain.result import Plan
-from optplan.judge import _areas, _continuity, _coverage, _finished, _motion, _ordering, _strokes
+from optplan.judge import _areas, _continuity, _coverage, _finished, _gears, _motion, _ordering, _strokes
 from optplan.judge._findings import deviation_limit, page_tolerance, unchecked
 from optplan.judge._integrate import integrate
 from optplan.judge._speeds import speeds
@@ -44,8 +44,10 @@ def verify(plan: Plan) -> Report:
         _continuity.curvature(path, robot, options, profile),
         _continuity.sharpness(path, robot, options, profile),
         steps,
+        _gears.backwards(path, robot),
+        _gears.changes(path, profile),
     ]
-    figures = [*_lengths(path), *orders]
+    figures = [*_lengths(path), *_gears.figures(path), *orders]
     areas: list[tuple[str, float, str]] = []
     exact = np.zeros(0, dtype=bool)
     if cover is None:

@@ -168,7 +168,7 @@ def curvature_steps(path: Path, samples: Samples, profile: Speeds | None) -> tup
     """
     if len(path) < 2:
         return noted("curvature steps", 0.0, "1/m", "There are no joints."), _orders(2, 0)
-    moving = ~path.is_stop[:-1] & ~path.is_stop[1:]
+    moving = ~path.is_stop[:-1] & ~path.is_stop[1:] & (path.gear[:-1] == path.gear[1:])
     if profile is not None:
         moving &= profile.joints[1:-1] > _STILL
     step = np.where(moving, np.abs(path.curvature[1:] - samples.end_curvature[:-1]), 0.0)
@@ -199,11 +199,13 @@ def _limit(robot: Robot, speed: float) -> float:
 
 
 def _jumps(path: Path, samples: Samples) -> FloatArray:
-    """(n - 1,) angle between the direction at the end of a piece and at the start of the next, rad."""
+    """(n - 1,) angle between where the robot points at the end of a piece and at the start of the next, rad."""
     if len(path) < 2:
         return np.zeros(0)
-    before = _directions(samples.end_heading[:-1], path.elevation[:-1])
-    after = _directions(path.heading[1:], path.elevation[1:])
+    # the body's: driven backwards it points against the direction of travel
+    back = np.where(path.gear > 0, 0.0, math.pi)
+    before = _directions(samples.end_heading[:-1] + back[:-1], path.elevation[:-1])
+    after = _directions(path.heading[1:] + back[1:], path.elevation[1:])
     # atan2 stays exact for small angles, where arccos of the product loses half the digits
     crossed = np.linalg.norm(np.cross(before, after), axis=1)
     angles: FloatArray = np.arctan2(crossed, np.einsum("ij,ij->i", before, after))

@@ -24,11 +24,11 @@ from optplan.judge._findings import (
 )
 from optplan.judge._speeds import Speeds
 
-NAMES = ("time", "rest", "speed", "acceleration", "wheel speed")
+NAMES = ("time", "rest", "speed", "acceleration", "wheel speed", "wheel acceleration")
 _INSTANT = 1e-9
 """s below which an interval of time is nothing."""
 _COLUMNS = (
-    "start", "heading", "elevation", "curvature", "sharpness", "length", "turn", "dwell", "tool", "stroke",
+    "start", "heading", "elevation", "curvature", "sharpness", "length", "turn", "dwell", "tool", "stroke", "gear",
 )  # fmt: skip
 
 
@@ -40,6 +40,7 @@ def motion(path: Path, trajectory: Trajectory, profile: Speeds, robot: Robot, op
         _speed(path, profile, robot, options),
         _acceleration(path, trajectory, profile, robot),
         _wheels(path, profile, robot),
+        _wheel_acceleration(path, profile, robot),
     ]
 
 
@@ -214,6 +215,41 @@ def _wheels(path: Path, profile: Speeds, robot: Robot) -> Check:
     detail = f"A wheel turns fastest on piece {int(row[worst])}."
     limit = mobility.wheel_speed
     return held("wheel speed", float(rate[worst]), limit, "rad/s", place, detail, slack=RELATIVE * limit)
+
+
+def _wheel_acceleration(path: Path, profile: Speeds, robot: Robot) -> Check:
+    """Largest change of a wheel's speed while driving, rad/s^2, between samples too.
+
+    On a stretch of constant acceleration a along a clothoid, the rims of the wheels, r from the middle, have the
+    tangential acceleration a (1 +- kappa r) +- r kappa' v^2, which is linear in the arc length: an end has the largest.
+    """
+    mobility = robot.mobility
+    if not isinstance(mobility, DiffDrive):
+        return noted("wheel acceleration", 0.0, "rad/s^2", "The robot has no wheels.")
+    limit = mobility.wheel_acceleration
+    length = profile.end - profile.begin
+    if not (length > 0).any():
+        return held("wheel acceleration", 0.0, limit, "rad/s^2", detail="Nothing moves.")
+    half, row, rate = mobility.track / 2, profile.row, path.sharpness[profile.row]
+    change = (profile.after**2 - profile.before**2) / 2
+    # a times length: over next to no path, speeds known to some nine digits say nothing about acceleration
+    fuzz = 1e-9 * (np.maximum(profile.before, profile.after) ** 2 + mobility.acceleration)
+    worst, place, count = 0.0, 0, 0
+    for spot, square in ((profile.begin, profile.before**2), (profile.end, profile.after**2)):
+        bend = path.curvature[row] + rate * spot
+        for side in (half, -half):
+            moved = np.abs(change * (1 + bend * side) + side * rate * square * length)
+            fine = moved <= mobility.acceleration * length * (1 + RELATIVE) + fuzz
+            value = moved / np.maximum(length, SAME_PLACE) / mobility.wheel_radius
+            value = np.where(fine, np.minimum(value, limit), value)
+            count += int((~fine).sum())
+            if value.max() > worst:
+                worst, place = float(value.max()), int(np.argmax(value))
+    detail = "No wheel changes its speed faster than it can."
+    if count:
+        detail = f"A wheel changes its speed too fast from {path.offsets[row[place]] + profile.begin[place]:.6g} m on."
+    where = place_of(path.start[int(row[place])])
+    return held("wheel acceleration", worst, limit, "rad/s^2", where, detail, slack=limit * RELATIVE)
 
 
 def _place_at(path: Path, s: float) -> Place | None:

@@ -34,10 +34,12 @@ class _Colours(NamedTuple):
     travel: str
     arrow: str
     text: str
+    back: str
+    """driven backwards"""
 
 
-_SAND = _Colours("#ecdcb4", "#8a6a3f", "#1f6f8b", "#fff6dd", "#3b2f1e")
-_PAPER = _Colours("#ffffff", "#1c2a39", "#d1495b", "#ffffff", "#1c2a39")
+_SAND = _Colours("#ecdcb4", "#8a6a3f", "#1f6f8b", "#fff6dd", "#3b2f1e", "#b0367a")
+_PAPER = _Colours("#ffffff", "#1c2a39", "#d1495b", "#ffffff", "#1c2a39", "#7a3fb0")
 
 
 def figure(plan: Plan) -> Figure:
@@ -127,14 +129,20 @@ def _draw_path(axes: Axes, plan: Plan, path: Path, colours: _Colours, scale: flo
         )
     moving = path.length > 0
     between = moving & ~down & (path.stroke < 0)
+    backwards = moving & (path.gear < 0)
     by_hand = moving & ~down & (path.stroke >= 0)
-    axes.add_collection(LineCollection(_lines(path, between), colors=colours.travel, linewidths=0.9, zorder=3))
+    forwards = between & ~backwards
+    axes.add_collection(LineCollection(_lines(path, forwards), colors=colours.travel, linewidths=0.9, zorder=3))
+    axes.add_collection(LineCollection(_lines(path, backwards), colors=colours.back, linewidths=1.3, zorder=3))
+    cusps = path.start[path.cusps]
+    axes.plot(cusps[:, 0], cusps[:, 1], "D", ms=3, color=colours.back, mec="white", mew=0.5, zorder=5)
     axes.add_collection(
         LineCollection(_lines(path, by_hand), colors=colours.travel, linewidths=1.1, linestyles="--", zorder=3)
     )
     spacing = float(max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))) / ARROWS
     _arrows(axes, path, moving & down, spacing, colours.arrow, colours.work)
-    _arrows(axes, path, between, spacing, colours.travel, colours.ground)
+    _arrows(axes, path, forwards, spacing, colours.travel, colours.ground)
+    _arrows(axes, path, backwards, spacing, colours.back, colours.ground)
     _numbers(axes, plan, colours, scale)
 
 
@@ -232,8 +240,10 @@ def _draw_places(axes: Axes, plan: Plan, colours: _Colours) -> None:
     if plan.path is not None:
         axes.plot([], [], "-", color=colours.work, lw=4, label="tool down")
         axes.plot([], [], "-", color=colours.travel, lw=1, label="tool up")
+        if len(plan.path.cusps) or (plan.path.gear < 0).any():
+            axes.plot([], [], "-D", color=colours.back, lw=1.3, ms=3, label="backwards, gear changes")
     if places:
-        axes.legend(loc="lower right", bbox_to_anchor=(1, 1), fontsize=7, frameon=False, ncols=4, columnspacing=1)
+        axes.legend(loc="lower right", bbox_to_anchor=(1, 1), fontsize=7, frameon=False, ncols=5, columnspacing=1)
     canvas = plan.cover.canvas
     if canvas is not None and canvas.margin > 0:
         m = canvas.margin

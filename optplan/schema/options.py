@@ -67,6 +67,7 @@ class ConnectModel(Model):
     keep_in: list[tuple[Length, Length]] | None = Field(None, description="a polygon that connectors do not leave")
     on_canvas: bool = Field(False, description="connectors stay on the canvas")
     clearance: Length = Field(0.0, description="between connectors and the borders of these areas")
+    reversing: bool = Field(False, description="connectors may be driven backwards, by a robot that can")
 
 
 class TimeModel(Model):
@@ -109,6 +110,7 @@ def options_from(model: OptionsModel) -> Options:
                 None if model.connect.keep_in is None else tuple(model.connect.keep_in),
                 model.connect.on_canvas,
                 model.connect.clearance,
+                model.connect.reversing,
             ),
             TimeOptions(**model.time.model_dump()),
         )

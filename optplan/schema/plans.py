@@ -106,6 +106,9 @@ class PathModel(Model):
     tool: list[Whole]
     stroke: list[Whole]
     orientation: list[tuple[Quaternion, Quaternion]] | None = None
+    gear: list[Literal[1, -1]] | None = Entry(
+        None, min_length=1, description="1 forwards, -1 backwards; absent: all forwards"
+    )
 
 
 class TrajectoryModel(Model):
@@ -373,15 +376,19 @@ _OFTEN_ZERO = ("elevation", "curvature", "sharpness", "turn", "dwell")
 def _path_model(path: Path) -> PathModel:
     columns = {name: getattr(path, name) for name in PathModel.model_fields if name != "orientation"}
     written = {k: None if k in _OFTEN_ZERO and not v.any() else v.tolist() for k, v in columns.items()}
+    if (path.gear > 0).all():
+        written["gear"] = None
     written["orientation"] = None if path.orientation is None else path.orientation.tolist()
     return PathModel.model_validate(written)
 
 
 def _path_from(model: PathModel) -> Path:
-    columns = {name: value for name, value in model if name != "orientation"}
+    columns = {name: value for name, value in model if name not in ("orientation", "gear")}
     zero = np.zeros(len(model.length))
     arrays: dict[str, Any] = {name: zero if value is None else _array(value) for name, value in columns.items()}
     arrays["start"] = arrays["start"].reshape(-1, 3)
+    if model.gear is not None:
+        arrays["gear"] = np.array(model.gear)
     return Path(**arrays, orientation=None if model.orientation is None else _array(model.orientation))
 
 

@@ -47,6 +47,8 @@ class DiffDriveModel(Model):
     turn_rate: Rate = 1.0
     radius: Length = Field(0.0, description="chosen least turning radius; 0 leaves what the wheels allow")
     sharpness: Sharpness | None = Field(None, description="chosen limit of dkappa/ds")
+    lateral_acceleration: Acceleration | None = Field(None, description="limit of v^2 |kappa|; none without it")
+    reverses: bool = Field(False, description="whether it may drive backwards")
 
 
 class GantryModel(Model):
@@ -162,8 +164,8 @@ def _mobility_model(mobility: Mobility) -> DiffDriveModel | GantryModel | BoomMo
     parts = {field.name: getattr(mobility, field.name) for field in fields(mobility)}
     match mobility:
         case DiffDrive():
-            chosen = None if math.isinf(mobility.sharpness) else mobility.sharpness
-            return DiffDriveModel.model_validate({**parts, "sharpness": chosen})
+            limits = {name: value for name, value in parts.items() if value != math.inf}
+            return DiffDriveModel.model_validate(limits)
         case Gantry():
             return GantryModel.model_validate(parts)
         case Boom():

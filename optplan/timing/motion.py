@@ -33,7 +33,7 @@ class Stations(NamedTuple):
 def stations(trajectory: Trajectory) -> Stations:
     """Knots and the body's headings at the ends of all pieces. Headings are those of each piece, not wrapped."""
     path = trajectory.path
-    gear = np.asarray(getattr(path, "gear", np.ones(len(path))), dtype=np.float64)
+    gear = path.gear.astype(np.float64)
     knot = np.zeros(len(path) + 1, dtype=np.int64)
     s, here, last = trajectory.s, 0, len(trajectory.s) - 1
     slack = _SAME * (1 + float(s[-1]))

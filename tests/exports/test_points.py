@@ -24,7 +24,7 @@ from optplan.exports import FORMATS, export_plan, usual_spacing
 from optplan.exports import points as module
 from optplan.exports.points import COLUMNS, ToolPoints, csv_text, format_points, parse_points, points_text, tool_points
 from optplan.problem import traversals
-from optplan.timing.trapezoid import profile
+from optplan.timing.fastest import profile
 from tests.strategies import RAKE, array, box
 
 

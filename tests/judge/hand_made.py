@@ -106,7 +106,8 @@ def profile(path: Path, robot: Robot, factor: float = 1.0, push: float = 1.0) ->
             v.append(0.0)
             continue
         top = factor * (mobility.work_speed if path.tool[row] else mobility.transit_speed)
-        rate = push * mobility.acceleration
+        half = mobility.track / 2 if isinstance(mobility, DiffDrive) else 0.0
+        rate = push * mobility.acceleration / (1 + half * abs(float(path.curvature[row])))
         top = min(top, math.sqrt(rate * length))
         ramp, begin, now = top**2 / (2 * rate), s[-1], t[-1]
         cruise = (length - 2 * ramp) / top

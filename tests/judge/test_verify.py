@@ -122,7 +122,19 @@ def bend_without_stop() -> Plan:
     path = path_of(plan)
     stop = int(np.flatnonzero(path.is_stop)[0])
     keep = np.delete(np.arange(len(path)), stop)
-    names = ("start", "heading", "elevation", "curvature", "sharpness", "length", "turn", "dwell", "tool", "stroke")
+    names = [
+        "start",
+        "heading",
+        "elevation",
+        "curvature",
+        "sharpness",
+        "length",
+        "turn",
+        "dwell",
+        "tool",
+        "stroke",
+        "gear",
+    ]
     return spoiled(plan, **{name: getattr(path, name)[keep] for name in names})
 
 
@@ -254,6 +266,14 @@ def wheels_too_fast() -> Plan:
     return road(replace(CAR, mobility=mobility))
 
 
+def wheel_too_hard() -> Plan:
+    """Bends are driven with the acceleration of straight lines."""
+    plan = road(RAKE)
+    assert isinstance(RAKE.mobility, DiffDrive)
+    narrow = replace(RAKE, mobility=replace(RAKE.mobility, track=1e-3))
+    return replace(plan, trajectory=profile(path_of(plan), narrow))
+
+
 def ordering(**values: object) -> Plan:
     plan = two_squares()
     assert plan.ordering is not None
@@ -313,8 +333,9 @@ BAD: dict[str, tuple[Callable[[], Plan], set[str]]] = {
     "too fast": (lambda: replace(two_squares(), trajectory=profile(path_of(two_squares()), RAKE, 1.01)), {"speed"}),
     "too hard": (
         lambda: replace(two_squares(), trajectory=profile(path_of(two_squares()), RAKE, push=1.01)),
-        {"acceleration"},
+        {"acceleration", "wheel acceleration"},
     ),
+    "a wheel too hard": (wheel_too_hard, {"wheel acceleration"}),
     "wheels too fast": (wheels_too_fast, {"curvature", "wheel speed"}),
     "false optimum": (lambda: ordering(bound=1.5), {"bound"}),
     "bound above cost": (lambda: ordering(bound=2.1), {"bound"}),

@@ -22,7 +22,7 @@ from optplan.domain.result import Plan
 from optplan.plot.films import gif_bytes
 from optplan.plot.stage import HEAD, SAND, Ground, ground_of
 from optplan.timing.motion import motion
-from tests.simulation.plans import BEND, CORNERS, QUARTER, plan_of
+from tests.simulation.plans import BEND, CORNERS, LINE, QUARTER, plan_of
 
 
 def frames_of(file: Path) -> list[np.ndarray]:
@@ -250,6 +250,15 @@ def test_other_robots(robot: str, tmp_path: Path) -> None:
     op.animate(plan, tmp_path / "film.gif", seconds=2, size=4)
     first, *_, last = frames_of(tmp_path / "film.gif")
     assert (first != last).any(axis=-1).sum() > 200
+
+
+def test_a_robot_that_drives_backwards_points_backwards() -> None:
+    plan = plan_of(replace(LINE, gear=np.array([-1])))
+    assert plan.trajectory is not None
+    moved = motion(plan.trajectory, plan.robot, np.linspace(0, plan.trajectory.duration, 51))
+    assert moved.speed.min() < -0.3
+    assert math.cos(moved.heading[25]) == pytest.approx(-1)
+    assert moved.x[-1] == pytest.approx(4.0)
 
 
 def test_frames_that_differ_little_are_small() -> None:

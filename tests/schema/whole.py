@@ -62,7 +62,7 @@ OPTIONS = Options(
     PageOptions(30.0, 20.0, THIRD, 0.01),
     CoverOptions(0.1 + 0.2, 0.3, 0.2, False, (("a", FillSettings(THIRD, None, 0.1)), ("b", FillSettings()))),
     OrderOptions("search", "euclid", 2.5, 100, 7, (1.5, -THIRD), 12),
-    ConnectOptions(math.radians(33.3)),
+    ConnectOptions(math.radians(33.3), reversing=True),
     TimeOptions(0.3, THIRD),
 )
 
@@ -90,6 +90,7 @@ def plan() -> Plan:
     path = Path(
         np.arange(9.0).reshape(3, 3) / 7, array([0, THIRD, 2]), zero, array([0, 1, 0]), array([0, -1, 0]),
         array([1, 2, 0]), array([0, 0, -0.3]), array([0, 0, 2]), np.array([1, 0, 2]), np.array([0, -1, 2]), quaternions,
+        np.array([1, -1, 1]),
     )  # fmt: skip
     trajectory = Trajectory(path, array([0, 1, 3, 3]), array([0, THIRD, 3, 5]), array([0, 1, 0, 0]))
     checks = (

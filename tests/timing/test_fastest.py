@@ -19,8 +19,9 @@ from optplan.domain.robot import DiffDrive, Gantry, Robot
 from optplan.domain.stroke import Stroke
 from optplan.geometry.paths import States, along
 from optplan.problem import traversals
+from optplan.timing.fastest import profile, turn_time
+from optplan.timing.grid import CONTROL_PERIOD
 from optplan.timing.sampling import moments
-from optplan.timing.trapezoid import CONTROL_PERIOD, profile, turn_time
 from tests.strategies import PLOTTER, RAKE, TOOL, WHEELS, array, circle, polylines
 
 
