@@ -47,7 +47,7 @@ def path_of(pieces: list[Piece], tool: list[int] | None = None, heading: float =
         table[:, 6],
         zero,
         np.array(tool if tool is not None else [1] * count),
-        np.zeros(count, dtype=np.int64),
+        np.full(count, -1, dtype=np.int64),
     )
 
 

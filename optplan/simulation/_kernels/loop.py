@@ -195,8 +195,13 @@ def _move(
     asked_l = left + excess * min(max(planned_l - state[LEAD_L], -most), most)
     asked_r = right + excess * min(max(planned_r - state[LEAD_R], -most), most)
     state[LEAD_L], state[LEAD_R] = planned_l, planned_r
-    asked_l = min(max(asked_l, -m.wheel_speed), m.wheel_speed)
-    asked_r = min(max(asked_r, -m.wheel_speed), m.wheel_speed)
+    # short of acceleration, the robot steers first and speeds up or brakes with what is left
+    change_l, change_r = m.share * (asked_l - state[LEFT]), m.share * (asked_r - state[RIGHT])
+    steer = min(max(0.5 * (change_r - change_l), -most), most)
+    left_over = most - abs(steer)
+    gain = min(max(0.5 * (change_l + change_r), -left_over), left_over)
+    asked_l = min(max(state[LEFT] + (gain - steer) / m.share, -m.wheel_speed), m.wheel_speed)
+    asked_r = min(max(state[RIGHT] + (gain + steer) / m.share, -m.wheel_speed), m.wheel_speed)
     next_l = answered(state[LEFT], asked_l, m.share, m.wheel_speed, most)
     next_r = answered(state[RIGHT], asked_r, m.share, m.wheel_speed, most)
     state[SLIP_L] = m.slipping * state[SLIP_L] + noise[0]

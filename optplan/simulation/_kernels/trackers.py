@@ -10,12 +10,14 @@ from __future__ import annotations
 import math
 
 from optplan.compiled import njit
-from optplan.simulation._kernels.route import FIRST, HEADING, KAPPA, LAST, OFFSET, SIGMA, Route, place, seek
+from optplan.simulation._kernels.route import FIRST, HEADING, KAPPA, LAST, LENGTH, OFFSET, SIGMA, Route, place, seek
 
 CATCH_UP = 2.0
 """1/s: speed for every metre behind the schedule."""
 SOFTENED = 0.05
-"""s; curvature is asked for as its mean over this time to both sides: a step becomes a ramp that wheels can follow."""
+"""s; a step of the curvature is spread over this time to both sides: a ramp that wheels can follow."""
+STEPPED = 1e-6
+"""1/m; a change of curvature between two pieces that is a step."""
 SPEED_P = 0.5
 """Share of the lacking speed that pure pursuit adds."""
 CROSS_P, CROSS_I, CROSS_D = 0.5, 0.2, 0.3
@@ -36,17 +38,24 @@ def _heading(route: Route, row: int, s: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _mean_curvature(route: Route, phase: int, row: int, low: float, high: float) -> float:
+def _soft_curvature(route: Route, phase: int, row: int, low: float, high: float) -> float:
+    """Curvature in the middle of low..high (m); its mean over them where it steps on the way."""
     first, last = route.phases[phase, FIRST], route.phases[phase, LAST]
     before = seek(route.pieces, first, last, row, low)
     after = seek(route.pieces, first, last, row, high)
     turned = _heading(route, after, high) - _heading(route, before, low)
-    # pieces may count the same heading with whole turns between them
+    steps = False
     for k in range(before, after):
-        end = _heading(route, k, route.pieces[k + 1, OFFSET])
-        jump = route.pieces[k + 1, HEADING] - end
+        p, following = route.pieces[k], route.pieces[k + 1]
+        steps |= abs(following[KAPPA] - p[KAPPA] - p[SIGMA] * p[LENGTH]) > STEPPED
+        # pieces may count the same heading with whole turns between them
+        jump = following[HEADING] - _heading(route, k, following[OFFSET])
         turned -= jump - turned_to(jump)
-    return float(turned / (high - low))
+    if steps:
+        return float(turned / (high - low))
+    middle = 0.5 * (low + high)
+    p = route.pieces[seek(route.pieces, first, last, row, middle)]
+    return float(p[KAPPA] + p[SIGMA] * (middle - p[OFFSET]))
 
 
 @njit(cache=True, nogil=True)
@@ -76,7 +85,7 @@ def path_frame(
     low, high = max(ahead - half, begin), min(ahead + half, end)
     if high - low < 1e-9:
         low, high = max(begin, end - half), end
-    kappa = _mean_curvature(route, phase, row, low, high)
+    kappa = _soft_curvature(route, phase, row, low, high)
     away = turned_to(astray)
     shortened = max(1.0 - kappa * offset, 0.2)  # a place further in drives a shorter way
     v = along * shortened / max(math.cos(away), 0.3)
