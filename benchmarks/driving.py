@@ -6,8 +6,8 @@ corner to 1 m behind it: the greatest, the root of the mean square, and the mean
 
 A published experiment with such a robot reports 0.480 and 0.198 rad/s^2, 59 % less. These are not the same figures: at
 1.5 m/s a wheel gains or loses v kappa track / (2 radius) = 4.3 rad/s on the way into this corner and again on the way
-out, which over 4 m and more is a mean above 3 rad/s^2, whatever steers. Published ones must be means over longer drives,
-or of smoothed speeds. What can be compared is how much less it becomes.
+out, which over 4 m and more is a mean above 3 rad/s^2, whatever steers. Published ones must be means over longer
+drives, or of smoothed speeds. What can be compared is how much less it becomes.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ def traversals(
     for a, i, b, j in links:
         kept.setdefault(a, []).append(i)
         kept.setdefault(b, []).append(j)
-    speed = options.time.work_speed or robot.mobility.work_speed
+    speed = options.time.speeds(robot.mobility)[0]
     both = metric_of(robot, options) != "euclid"
     most = options.order.entries or (DUBINS_ENTRIES if both else None)
     parts = [_ways(stroke, robot, options, both, most, kept.get(k, [])) for k, stroke in enumerate(strokes)]

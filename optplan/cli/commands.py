@@ -20,6 +20,7 @@ from optplan.cli.settings import (
     Clearance,
     CloseGap,
     ConfigFile,
+    ConstantSpeed,
     Corner,
     Direction,
     ElementFill,
@@ -34,6 +35,7 @@ from optplan.cli.settings import (
     InnerFirst,
     Inset,
     Iterations,
+    JerkLimit,
     Lag,
     Links,
     Lookahead,
@@ -43,6 +45,7 @@ from optplan.cli.settings import (
     Motor,
     Noise,
     OnCanvas,
+    PowerLimit,
     Reversing,
     RobotName,
     Seed,
@@ -152,6 +155,9 @@ def plan_command(
     reversing: Reversing = None,
     work_speed: WorkSpeed = None,
     transit_speed: TransitSpeed = None,
+    jerk: JerkLimit = None,
+    power: PowerLimit = None,
+    constant_speed: ConstantSpeed = None,
 ) -> None:
     """Plan a job: writes plan.json and a picture, checks the plan and prints the findings."""
     from optplan.instances import shipped_or_file
@@ -452,6 +458,9 @@ def time(
     json: Json = False,
     work_speed: WorkSpeed = None,
     transit_speed: TransitSpeed = None,
+    jerk: JerkLimit = None,
+    power: PowerLimit = None,
+    constant_speed: ConstantSpeed = None,
 ) -> None:
     """Time: the speed profile along the path."""
     _stage("time", file, out, dict(locals()), rest, force, quiet, json)

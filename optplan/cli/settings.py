@@ -72,6 +72,11 @@ Reversing = Annotated[
 ]
 WorkSpeed = Annotated[str | None, typer.Option(help="With the tool down, m/s.")]
 TransitSpeed = Annotated[str | None, typer.Option(help="With the tool up, m/s.")]
+JerkLimit = Annotated[str | None, typer.Option("--jerk", help="Limit of the acceleration's change, m/s^3.")]
+PowerLimit = Annotated[str | None, typer.Option("--power", help="Limit of acceleration times speed, W/kg.")]
+ConstantSpeed = Annotated[
+    str | None, typer.Option("--constant-speed", help="One speed everywhere, m/s: to compare with older planners.")
+]
 
 Tracker = Annotated[str, typer.Option(help="path-frame or pure-pursuit.")]
 Ideal = Annotated[bool, typer.Option("--ideal", help="No lag, no slip, no noise.")]
@@ -115,6 +120,9 @@ _PLACES = {
     "reversing": ("connect", "reversing"),
     "work_speed": ("time", "work_speed"),
     "transit_speed": ("time", "transit_speed"),
+    "jerk": ("time", "jerk"),
+    "power": ("time", "power"),
+    "constant_speed": ("time", "constant_speed"),
 }
 """Flags that are one setting: their group and name."""
 

@@ -109,7 +109,7 @@ def family_of(robot: Robot, options: Options) -> Family:
         raise InputError("reversing says nothing about the metric 'euclid'; expected 'dubins' or 'cc'")
     if metric == "euclid":
         return Family(metric)
-    speed = options.time.transit_speed or robot.mobility.transit_speed
+    speed = options.time.speeds(robot.mobility)[1]
     limits = robot.mobility.curvature_limits(speed)
     if not 0 < limits.curvature < math.inf:
         reason = "follows any curve" if limits.curvature > 0 else f"cannot turn at {speed:g} m/s"

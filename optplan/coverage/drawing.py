@@ -99,7 +99,7 @@ def _loop_note(robot: Robot, canvas: Canvas | None, options: Options) -> list[No
     """A notice when a robot that cannot turn on the spot has little room for its turning loops."""
     if canvas is None or not robot.heading_counts:
         return []
-    curvature = robot.mobility.curvature_limits(options.time.transit_speed or robot.mobility.transit_speed).curvature
+    curvature = robot.mobility.curvature_limits(options.time.speeds(robot.mobility)[1]).curvature
     if curvature <= 0 or canvas.margin >= 3 / curvature:
         return []
     text = (

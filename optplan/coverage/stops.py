@@ -29,7 +29,7 @@ def tolerance_of(page: PageOptions, tool: Tool) -> float:
 
 def work_limits(robot: Robot, options: Options) -> CurvatureLimits:
     """What the robot follows with its tool down when it creeps: 1/m and 1/m^2, infinite where it follows any curve."""
-    speed = options.time.work_speed or robot.mobility.work_speed
+    speed = options.time.speeds(robot.mobility)[0]
     return robot.mobility.curvature_limits(CREEP * speed)
 
 

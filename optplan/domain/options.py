@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from optplan.domain.arrays import MAX_NUMBER
 from optplan.domain.errors import InputError
 from optplan.domain.job import FillSettings
+from optplan.domain.robot import Mobility
 
 METRICS = ("auto", "euclid", "dubins", "cc")
 
@@ -149,13 +150,35 @@ class ConnectOptions:
 
 @dataclass(frozen=True)
 class TimeOptions:
-    """Speeds, m/s; None takes the robot's."""
+    """How fast the path is driven.
+
+    Parameters
+    ----------
+    work_speed, transit_speed : m/s with the tool down and up; None takes the robot's
+    jerk : limit of the change of the acceleration along the path, m/s^3
+    power : limit of acceleration times speed, W/kg
+    constant_speed : m/s everywhere, from the first metre to the last, as older planners have it: to compare with, as
+        no robot drives so
+    """
 
     work_speed: float | None = None
     transit_speed: float | None = None
+    jerk: float | None = None
+    power: float | None = None
+    constant_speed: float | None = None
 
     def __post_init__(self) -> None:
         _above_zero("time", work_speed=self.work_speed, transit_speed=self.transit_speed)
+        _above_zero("time", jerk=self.jerk, power=self.power, constant_speed=self.constant_speed)
+        others = (self.work_speed, self.transit_speed, self.jerk, self.power)
+        if self.constant_speed is not None and any(limit is not None for limit in others):
+            raise InputError("time constant_speed excludes the other limits of speed; expected it alone")
+
+    def speeds(self, mobility: Mobility) -> tuple[float, float]:
+        """Limits of speed with the tool down and up, m/s."""
+        if self.constant_speed is not None:
+            return self.constant_speed, self.constant_speed
+        return self.work_speed or mobility.work_speed, self.transit_speed or mobility.transit_speed
 
 
 @dataclass(frozen=True)

@@ -68,7 +68,9 @@ def deviation_limit(robot: Robot, options: Options) -> float:
 
 def work_and_transit_speed(robot: Robot, options: Options) -> tuple[float, float]:
     """Speed limits with the tool down and up, m/s: the chosen ones, or the robot's."""
-    work, transit = options.time.work_speed, options.time.transit_speed
+    work, transit, constant = options.time.work_speed, options.time.transit_speed, options.time.constant_speed
+    if constant is not None:
+        return constant, constant
     mobility = robot.mobility
     return (mobility.work_speed if work is None else work), (mobility.transit_speed if transit is None else transit)
 

@@ -24,7 +24,8 @@ from optplan.judge._findings import (
 )
 from optplan.judge._speeds import Speeds
 
-NAMES = ("time", "rest", "speed", "acceleration", "wheel speed", "wheel acceleration")
+NAMES = ("time", "rest", "speed", "acceleration", "wheel speed", "wheel acceleration", "jerk", "power")
+_OF_CHANGES = ("rest", "acceleration", "wheel acceleration")
 _INSTANT = 1e-9
 """s below which an interval of time is nothing."""
 _COLUMNS = (
@@ -34,13 +35,23 @@ _COLUMNS = (
 
 def motion(path: Path, trajectory: Trajectory, profile: Speeds, robot: Robot, options: Options) -> list[Check]:
     """All checks of a speed profile."""
-    return [
+    checks = [
         _time(path, trajectory, profile, robot),
         _rest(trajectory),
         _speed(path, profile, robot, options),
         _acceleration(path, trajectory, profile, robot),
         _wheels(path, profile, robot),
         _wheel_acceleration(path, profile, robot),
+        _jerk(path, profile, options),
+        _power(path, profile, options),
+    ]
+    if options.time.constant_speed is None:
+        return checks
+    # one speed from the first metre to the last is a way to compare plans, not to drive them
+    asked = "One constant speed was asked for; no robot reaches it in no time."
+    return [
+        noted(check.name, check.value, check.unit, asked, check.place) if check.name in _OF_CHANGES else check
+        for check in checks
     ]
 
 
@@ -250,6 +261,47 @@ def _wheel_acceleration(path: Path, profile: Speeds, robot: Robot) -> Check:
         detail = f"A wheel changes its speed too fast from {path.offsets[row[place]] + profile.begin[place]:.6g} m on."
     where = place_of(path.start[int(row[place])])
     return held("wheel acceleration", worst, limit, "rad/s^2", where, detail, slack=limit * RELATIVE)
+
+
+def _jerk(path: Path, profile: Speeds, options: Options) -> Check:
+    """Largest change of the acceleration along the path, m/s^3: from the middle of one stretch to that of the next.
+
+    From rest, and to it, the acceleration changes within half of the stretch's time.
+    """
+    limit = options.time.jerk
+    if limit is None:
+        return noted("jerk", 0.0, "m/s^3", "Nothing limits it.")
+    length = profile.end - profile.begin
+    rate = np.divide(profile.after**2 - profile.before**2, 2 * length, out=np.zeros_like(length), where=length > 0)
+    speed = profile.after[:-1]
+    moving = (length[:-1] > 0) & (length[1:] > 0) & (speed > 0)
+    if not (length > 0).any():
+        return held("jerk", 0.0, limit, "m/s^3", detail="Nothing moves.")
+    between = np.maximum((length[:-1] + length[1:]) / 2, SAME_PLACE)
+    value = np.where(moving, np.abs(np.diff(rate)) * speed / between, 0.0)
+    resting = (profile.before == 0) != (profile.after == 0)
+    alone = np.where(resting, np.abs(rate) * (profile.before + profile.after) / np.maximum(length, SAME_PLACE), 0.0)
+    value = np.maximum(alone, np.append(value, 0.0))
+    worst = int(np.argmax(value))
+    where = place_of(path.start[int(profile.row[worst])])
+    detail = f"The acceleration changes fastest on piece {int(profile.row[worst])}."
+    return held("jerk", float(value[worst]), limit, "m/s^3", where, detail, slack=limit * 10 * RELATIVE)
+
+
+def _power(path: Path, profile: Speeds, options: Options) -> Check:
+    """Largest product of acceleration and speed, W/kg, while it speeds up."""
+    limit = options.time.power
+    if limit is None:
+        return noted("power", 0.0, "W/kg", "Nothing limits it.")
+    length = profile.end - profile.begin
+    rate = np.divide(profile.after**2 - profile.before**2, 2 * length, out=np.zeros_like(length), where=length > 0)
+    value = rate * profile.after
+    if not (value > 0).any():
+        return held("power", 0.0, limit, "W/kg", detail="Nothing speeds up.")
+    worst = int(np.argmax(value))
+    where = place_of(path.start[int(profile.row[worst])])
+    detail = f"Speeding up takes most on piece {int(profile.row[worst])}."
+    return held("power", float(value[worst]), limit, "W/kg", where, detail, slack=limit * 10 * RELATIVE)
 
 
 def _place_at(path: Path, s: float) -> Place | None:

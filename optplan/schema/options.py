@@ -10,7 +10,7 @@ from pydantic import Field
 from optplan.domain.errors import located
 from optplan.domain.job import FillSettings
 from optplan.domain.options import ConnectOptions, CoverOptions, Options, OrderOptions, PageOptions, TimeOptions
-from optplan.schema.base import Angle, Duration, Length, Model, Speed
+from optplan.schema.base import Angle, Duration, Jerk, Length, Model, SpecificPower, Speed
 
 
 class PageModel(Model):
@@ -75,6 +75,9 @@ class TimeModel(Model):
 
     work_speed: Speed | None = None
     transit_speed: Speed | None = None
+    jerk: Jerk | None = Field(None, description="limit of the change of the acceleration along the path")
+    power: SpecificPower | None = Field(None, description="limit of acceleration times speed")
+    constant_speed: Speed | None = Field(None, description="one speed everywhere, to compare with")
 
 
 class OptionsModel(Model):

@@ -65,27 +65,14 @@ class Grid(NamedTuple):
     half_track: float
     """m; 0 for robots without wheels"""
 
-    @property
-    def weight(self) -> FloatArray:
-        """(n, 2, 2) |1 +- kappa r| of each wheel at both ends."""
-        sides = 1.0 + np.array([1.0, -1.0])[None, :, None] * self.curvature[:, None, :] * self.half_track
-        return np.abs(sides)
 
-    @property
-    def steer(self) -> FloatArray:
-        """(n, 2) +- r kappa' of each wheel, with the sign of 1 +- kappa r."""
-        middle = 1.0 + np.array([1.0, -1.0]) * self.curvature.mean(axis=1)[:, None] * self.half_track
-        steer: FloatArray = np.array([1.0, -1.0]) * self.half_track * self.sharpness[:, None] * np.sign(middle)
-        return steer
-
-
-def grid_of(path: Path, robot: Robot, options: Options, step: float = STEP) -> Grid:
-    """The intervals of a path; step : longest one where the curvature changes, m."""
+def grid_of(path: Path, robot: Robot, options: Options, step: float = STEP, *, even: bool = False) -> Grid:
+    """The intervals of a path; step : longest one where the curvature changes (even: anywhere), m."""
     mobility = robot.mobility
     half = mobility.track / 2 if isinstance(mobility, DiffDrive) else 0.0
-    piece, begin, end = _intervals(path, half, step)
-    curvature = path.curvature[piece, None] + path.sharpness[piece, None] * np.column_stack([begin, end])
+    piece, begin, end = _intervals(path, half, step, even)
     sharpness, length = path.sharpness[piece], end - begin
+    curvature = np.column_stack([path.curvature[piece] + sharpness * place for place in (begin, end)])
     limit, inside = _caps(path, robot, options, piece, curvature, sharpness)
     cap = np.concatenate([limit[:, 0], [0.0]])
     cap[1:-1] = np.minimum(cap[1:-1], limit[:-1, 1])
@@ -95,19 +82,19 @@ def grid_of(path: Path, robot: Robot, options: Options, step: float = STEP) -> G
     short = (length > 0) & (length < SHORTEST)
     level = short & (cap[:-1] > 0) & (cap[1:] > 0)
     acceleration = np.where(level, 0.0, np.where(short, 0.9 * mobility.acceleration, mobility.acceleration))
+    inside = np.full(len(piece), np.inf) if even else inside
     s = np.append(path.offsets[piece] + begin, path.offsets[-1])
     return Grid(piece, s, length, curvature, sharpness, cap, inside, acceleration, half)
 
 
-def _intervals(path: Path, half: float, step: float) -> tuple[IntArray, FloatArray, FloatArray]:
+def _intervals(path: Path, half: float, step: float, even: bool) -> tuple[IntArray, FloatArray, FloatArray]:
     """Pieces, and where on them each interval begins and ends, m.
 
     Where a wheel's acceleration depends on the speed, intervals are so short that the passes of the sweep are exact:
     2 length r |kappa'| < |1 +- kappa r| for each wheel, unless it hardly moves.
     """
-    count = np.ones(len(path), dtype=np.int64)
-    if half > 0:
-        count = np.where(path.sharpness != 0, np.maximum(np.ceil(path.length / step), 1), 1).astype(np.int64)
+    cut = np.full(len(path), even) | ((half > 0) & (path.sharpness != 0))
+    count = np.where(cut, np.maximum(np.ceil(path.length / step), 1), 1).astype(np.int64)
     piece = np.repeat(np.arange(len(path)), count)
     number = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)
     share = path.length[piece] / count[piece]
@@ -126,10 +113,10 @@ def _intervals(path: Path, half: float, step: float) -> tuple[IntArray, FloatArr
 
 def _coarse(path: Path, half: float, piece: IntArray, begin: FloatArray, end: FloatArray) -> BoolArray:
     """(n,) which intervals are too long for their wheels."""
-    ends = path.curvature[piece, None] + path.sharpness[piece, None] * np.column_stack([begin, end])
-    least = np.abs(1.0 - half * np.abs(ends)).min(axis=1)
-    most = np.abs(1.0 - half * np.abs(ends)).max(axis=1)
-    reach = 2.2 * (end - begin) * half * np.abs(path.sharpness[piece])
+    curvature, sharpness = path.curvature[piece], path.sharpness[piece]
+    first, last = (np.abs(1.0 - half * np.abs(curvature + sharpness * place)) for place in (begin, end))
+    least, most = np.minimum(first, last), np.maximum(first, last)
+    reach = 2.2 * (end - begin) * half * np.abs(sharpness)
     coarse: BoolArray = (least <= reach) & (most > STANDING)
     return coarse
 
@@ -139,38 +126,38 @@ def _caps(
 ) -> tuple[FloatArray, FloatArray]:
     """Greatest b at both ends (n, 2) of every interval, and between them where nothing changes, else infinite."""
     mobility = robot.mobility
-    work = options.time.work_speed or mobility.work_speed
-    transit = options.time.transit_speed or mobility.transit_speed
-    speed = np.where(path.tool[piece] == RAISED, transit, work)
-    cap = np.repeat(speed[:, None] ** 2, 2, axis=1)
+    work, transit = options.time.speeds(mobility)
+    moving = path.length[piece] > 0
+    common = np.where(moving, np.where(path.tool[piece] == RAISED, transit, work) ** 2, 0.0)
+    first, last = np.ascontiguousarray(curvature.T)
+    middle = (first + last) / 2
+    caps = []
     if isinstance(mobility, DiffDrive):
         half = mobility.track / 2
-        bend = np.abs(curvature)
-        middle = curvature.mean(axis=1, keepdims=True)
         rim = (mobility.wheel_speed * mobility.wheel_radius) ** 2
         for side in (half, -half):
-            cap = np.minimum(cap, _below(rim, (1 + side * curvature) ** 2, (1 + side * middle) ** 2))
+            caps.append(_below(rim, (1 + side * first) ** 2, (1 + side * middle) ** 2, (1 + side * last) ** 2))
+        if math.isfinite(mobility.lateral_acceleration):
+            caps.append(_below(mobility.lateral_acceleration, np.abs(first), np.abs(middle), np.abs(last)))
         with np.errstate(divide="ignore"):
             steer = mobility.acceleration / (np.abs(sharpness) * half)
         # a wheel that hardly moves is not told of the robot's acceleration, which is at most this share of the limit
-        slow = np.abs(1.0 - half * bend)
-        share = 2.0 * slow.max(axis=1) / (1.0 + half * bend.min(axis=1))
-        cap = np.minimum(cap, np.where(slow.max(axis=1) <= STANDING, steer * (1.0 - share), steer)[:, None])
-        if math.isfinite(mobility.lateral_acceleration):
-            cap = np.minimum(cap, _below(mobility.lateral_acceleration, bend, np.abs(middle)))
-    moving = path.length[piece] > 0
-    cap = np.where(moving[:, None], cap, 0.0)
-    return cap, np.where(sharpness == 0, cap.min(axis=1), np.inf)
+        slow = np.maximum(np.abs(1.0 - half * np.abs(first)), np.abs(1.0 - half * np.abs(last)))
+        share = 2.0 * slow / (1.0 + half * np.minimum(np.abs(first), np.abs(last)))
+        common = np.minimum(common, np.where(slow <= STANDING, steer * (1.0 - share), steer))
+    begin, end = common, common
+    for at_first, at_last in caps:
+        begin, end = np.minimum(begin, at_first), np.minimum(end, at_last)
+    return np.column_stack([begin, end]), np.where(sharpness == 0, np.minimum(begin, end), np.inf)
 
 
-def _below(limit: float, ends: FloatArray, middle: FloatArray) -> FloatArray:
-    """b (n, 2) at both ends so that b q <= limit all along, for convex q: (n, 2) at the ends, (n, 1) in the middle."""
-    most = ends.max(axis=1, keepdims=True)
+def _below(limit: float, first: FloatArray, middle: FloatArray, last: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """b (n,) at both ends so that b q <= limit all along, for convex q (n,) at the ends and in the middle."""
+    most = np.maximum(first, last)
     with np.errstate(divide="ignore", invalid="ignore"):
-        tangent = limit * (2.0 * middle - ends) / middle**2
-        least = np.repeat(limit / most, 2, axis=1)
-    below: FloatArray = np.where(most < FLAT * middle, tangent, least)
-    return below
+        double, scale, least = 2.0 * middle, limit / middle**2, limit / most
+    smooth = most < FLAT * middle
+    return np.where(smooth, scale * (double - first), least), np.where(smooth, scale * (double - last), least)
 
 
 def _joint_speeds(path: Path, robot: Robot) -> FloatArray:

@@ -12,17 +12,21 @@ from hypothesis import strategies as st
 
 from optplan.connectors.driving import connect
 from optplan.domain.arrays import FloatArray
+from optplan.domain.job import Drawing
 from optplan.domain.options import Options, PageOptions, TimeOptions
 from optplan.domain.path import Path, Trajectory
-from optplan.domain.result import Cover
+from optplan.domain.report import Verdict
+from optplan.domain.result import Cover, Plan
 from optplan.domain.robot import DiffDrive, Gantry, Robot
 from optplan.domain.stroke import Stroke
 from optplan.geometry.paths import States, along
+from optplan.judge import verify
 from optplan.problem import traversals
 from optplan.timing.fastest import profile, turn_time
 from optplan.timing.grid import CONTROL_PERIOD
 from optplan.timing.sampling import moments
 from tests.strategies import PLOTTER, RAKE, TOOL, WHEELS, array, circle, polylines
+from tests.timing.clothoid_paths import SLIPPERY, WEAK, clothoids, random_path
 
 
 def at(path: Path, s: FloatArray) -> States:
@@ -177,6 +181,101 @@ def test_more_is_never_slower(points: FloatArray, speed: float, push: float) -> 
         "faster", "", TOOL, Gantry(0.4 * speed, 0.6 * speed, 1.0 * push), PLOTTER.canvas
     )  # fmt: skip
     assert profile(path, faster).duration <= profile(path, PLOTTER).duration * (1 + 1e-9)
+
+
+def _wheels(path: Path, made: Trajectory, track: float, share: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Speeds and accelerations (2, k) of the wheels' rims at these shares of every stretch between two knots."""
+    length = np.diff(made.s)
+    stretch = np.flatnonzero(length > 1e-7)
+    square, step = made.v**2, length[stretch]
+    rate = np.diff(square)[stretch] / (2 * step)
+    piece = np.searchsorted(path.offsets, (made.s[:-1] + made.s[1:])[stretch] / 2, side="right") - 1
+    gone = share[:, None] * step
+    b = np.maximum(square[stretch] + 2 * rate * gone, 0.0)
+    sharp = path.sharpness[piece]
+    kappa = path.curvature[piece] + sharp * (made.s[:-1][stretch] - path.offsets[piece] + gone)
+    sides = np.array([1.0, -1.0])[:, None, None] * track / 2
+    speed, push = np.sqrt(b) * (1 + sides * kappa), rate * (1 + sides * kappa) + sides * sharp * b
+    return speed.reshape(2, -1), push.reshape(2, -1)
+
+
+@pytest.mark.parametrize("tight", [0.5, 1.5, 3.9, 9.0])
+@pytest.mark.parametrize("robot", [WEAK, SLIPPERY], ids=lambda robot: robot.name)
+def test_no_limit_is_passed_between_samples(robot: Robot, tight: float) -> None:
+    """At 9 1/m the inner wheel runs backwards, and stands still somewhere on the way there."""
+    mobility = robot.mobility
+    assert isinstance(mobility, DiffDrive)
+    for seed in range(20):
+        path = random_path(10, seed, tight)
+        made = profile(path, robot)
+        speed, push = _wheels(path, made, mobility.track, np.linspace(0, 1, 51))
+        assert np.abs(speed).max() <= mobility.wheel_speed * mobility.wheel_radius * (1 + 1e-9)
+        assert np.abs(push).max() <= mobility.acceleration * (1 + 1e-6)
+        assert np.abs(push).max() >= 0.9 * mobility.acceleration
+        times = np.linspace(0, made.duration, 3000)
+        gone = np.interp(times, made.t, made.s)
+        bend = np.abs(at(path, gone[1:-1]).curvature)
+        _, v = moments(made, gone[1:-1], np.zeros(len(bend), dtype=bool))
+        assert (v**2 * bend).max() <= mobility.lateral_acceleration * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("robot", [WEAK, SLIPPERY, PLOTTER], ids=lambda robot: robot.name)
+def test_driven_the_other_way_it_takes_as_long(robot: Robot, seed: int) -> None:
+    path = random_path(9, seed)
+    curvatures = np.append(path.curvature, 0.0)
+    back = clothoids(path.length[::-1], -curvatures[::-1])
+    assert profile(back, robot).duration == pytest.approx(profile(path, robot).duration, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("robot", [WEAK, SLIPPERY], ids=lambda robot: robot.name)
+def test_a_finer_grid_gains_little(robot: Robot, seed: int) -> None:
+    path = random_path(9, seed)
+    usual, fine = profile(path, robot), profile(path, robot, step=0.002)
+    assert fine.duration <= usual.duration * (1 + 1e-6)
+    assert usual.duration <= fine.duration * 1.002
+
+
+def test_a_circle_is_driven_at_its_limit() -> None:
+    """Up, around and down with the outer wheel's acceleration; v^2 kappa is at its limit in between."""
+    zero, row = np.zeros(1), np.zeros(1, dtype=np.int64)
+    path = Path(np.zeros((1, 3)), zero, zero, array([2.0]), zero, array([30.0]), zero, zero, row + 1, row)
+    made = profile(path, SLIPPERY)
+    top, push = math.sqrt(0.2 / 2.0), 0.8 / (1 + 2.0 * 0.25)
+    assert made.v.max() == pytest.approx(top)
+    assert made.duration == pytest.approx(30 / top + top / push)
+
+
+@pytest.mark.parametrize("name", ["wheel_speed", "wheel_acceleration", "lateral_acceleration", "work_speed"])
+@pytest.mark.parametrize("seed", range(5))
+def test_wheels_that_can_less_are_never_faster(name: str, seed: int) -> None:
+    path = random_path(9, seed)
+    mobility = SLIPPERY.mobility
+    assert isinstance(mobility, DiffDrive)
+    less = replace(mobility, **{name: 0.8 * getattr(mobility, name)})
+    assert profile(path, Robot("less", "", TOOL, less)).duration >= profile(path, SLIPPERY).duration * (1 - 1e-9)
+
+
+def test_constant_speed_is_length_over_speed() -> None:
+    path = random_path(5, 3)
+    made = profile(path, WEAK, Options(time=TimeOptions(constant_speed=0.5)))
+    assert made.duration == pytest.approx(path.offsets[-1] / 0.5)
+    assert (made.v == 0.5).all()
+
+
+@pytest.mark.parametrize("limits", [{"jerk": 0.4}, {"power": 0.2}, {"jerk": 1.0, "power": 0.3}])
+def test_gentle_profiles_keep_all_limits(limits: dict[str, float]) -> None:
+    ring = circle(3.0, 60)
+    stroke = Stroke("u", np.concatenate([array([[3, -5]]), ring[:31], array([[-3, -5]])]))
+    options = Options(page=PageOptions(tolerance=0.1), time=TimeOptions(**limits))
+    path = connect(traversals([stroke], WEAK, options).take([0]), Cover((stroke,)), WEAK, options)
+    made, free = profile(path, WEAK, options), profile(path, WEAK)
+    assert free.duration < made.duration < 3 * free.duration
+    report = verify(Plan(Drawing("u", ()), WEAK, options, Cover((stroke,)), path=path, trajectory=made))
+    checked = {check.name: check for check in report.checks}
+    for name in ("time", "rest", "speed", "acceleration", "wheel speed", "wheel acceleration", *limits):
+        assert checked[name].verdict is Verdict.PASSED, checked[name]
 
 
 @given(polylines(), st.lists(st.floats(0, 1), min_size=1, max_size=20))
