@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
 import optplan as op
+from optplan.domain.arrays import IntArray
 from optplan.domain.path import Path
 from optplan.domain.result import Plan
 from optplan.domain.robot import DiffDrive, Robot
@@ -49,6 +50,12 @@ def path_of(pieces: list[Piece], tool: list[int] | None = None, heading: float =
         np.array(tool if tool is not None else [1] * count),
         np.full(count, -1, dtype=np.int64),
     )
+
+
+def taken(path: Path, rows: IntArray) -> Path:
+    """Some pieces of a path."""
+    columns: dict[str, Any] = {field.name: getattr(path, field.name) for field in fields(path)}
+    return Path(**{name: None if column is None else column[rows] for name, column in columns.items()})
 
 
 def plan_of(path: Path, robot: Robot | None = None) -> Plan:

@@ -17,7 +17,7 @@ from optplan.domain.result import Plan
 from optplan.domain.robot import DiffDrive
 from optplan.domain.stop import StopRule
 from optplan.simulation.trace import COLUMNS, trace_text
-from tests.simulation.plans import BEND, CORNERS, EIGHT, LINE, QUARTER, path_of, plan_of, rake
+from tests.simulation.plans import BEND, CORNERS, EIGHT, LINE, QUARTER, path_of, plan_of, rake, taken
 
 PATHS = {"line": LINE, "corners": CORNERS, "bend": BEND, "eight": EIGHT}
 
@@ -82,6 +82,15 @@ def test_limits_and_kinematics_with_lag_and_noise(name: str, tracker: str) -> No
     assert np.diff(drive.y) == pytest.approx(0.01 * v * np.sin(middle), abs=1e-4)
 
 
+def test_the_offset_is_the_distance_from_the_path() -> None:
+    drive = op.simulate(plan_of(BEND), op.DriveOptions(tracker="pure-pursuit", lag=0.2, slip=0.1, noise=0.02))
+    end = points_of(BEND)[-1]
+    between = np.hypot(drive.x - end[0], drive.y - end[1]) > 0.2  # beyond the end there is no line to be beside
+    away = distances(drive, BEND)[between]
+    assert away.max() > 0.02
+    assert np.abs(drive.cross_track[between]) == pytest.approx(away, abs=1e-3)
+
+
 def test_speeds_are_those_of_the_wheels() -> None:
     drive = op.simulate(plan_of(BEND), op.DriveOptions(lag=0.08))
     left, right = 0.1 * drive.wheel_speed.T
@@ -128,12 +137,41 @@ def test_tool_settings_are_switched_where_the_path_says() -> None:
 def test_a_corner_without_a_stop_is_turned_too() -> None:
     path = path_of([(1.0, 0, 0, 0), (0.0, 0, 0, 1.0), (1.0, 0, 0, 0)])
     rows = np.array([0, 2])
-    names = ("start", "heading", "elevation", "curvature", "sharpness", "length", "turn", "dwell", "tool", "stroke")
-    bare = Path(*(getattr(path, name)[rows] for name in names))
-    drive = op.simulate(plan_of(bare))
+    drive = op.simulate(plan_of(taken(path, rows)))
     assert drive.finished
     assert np.abs(drive.cross_track).max() < 2e-3
     assert drive.heading[-1] == pytest.approx(1.0, abs=5e-3)
+
+
+@pytest.mark.parametrize("tracker", ["path-frame", "pure-pursuit"])
+def test_backwards_and_forwards_again(tracker: str) -> None:
+    path = path_of([(2, 0, 0, 0), (0, 0, 0, math.pi), (2, 0.5, 0, 0), (0, 0, 0, math.pi), (2, 0, 0, 0)])
+    rows = np.array([0, 2, 4])
+    cusped = replace(taken(path, rows), gear=np.array([1, -1, 1]))
+    drive = op.simulate(plan_of(cusped), op.DriveOptions(tracker=tracker))
+    assert drive.finished, drive.reason
+    assert drive.speed.min() < -0.3
+    assert drive.speed.max() > 0.3
+    assert np.abs(drive.cross_track).max() < (1e-3 if tracker == "path-frame" else 0.05)
+    # the travel to the left while it backs turns the body to the left, by 1 rad in all
+    assert drive.heading[-1] == pytest.approx(1.0, abs=0.02)
+    standing = np.abs(drive.turn_rate[np.abs(drive.speed) < 1e-3])
+    assert standing.max() < 0.05  # it does not turn round on the spot
+    assert math.hypot(drive.x[-1] - path.start[4, 0], drive.y[-1] - path.start[4, 1]) == pytest.approx(2, abs=0.03)
+
+
+def test_a_tool_beside_a_robot_that_backs() -> None:
+    robot = rake()
+    robot = replace(robot, tool=replace(robot.tool, right=0.3, ahead=0.1))
+    back = replace(path_of([(3, 0.4, 0, 0)]), gear=np.array([-1]))
+    drive = op.simulate(plan_of(back, robot), op.DriveOptions(ideal=True, beside=True))
+    assert drive.finished
+    # travelling along +x with its front towards -x, its right is +y
+    assert (drive.tool_x[0], drive.tool_y[0]) == pytest.approx((-0.1, 0.3))
+    # the arc is about (0, 2.5); the tool stays on its own circle about the same centre
+    radius = np.hypot(drive.tool_x, drive.tool_y - 2.5)
+    assert radius == pytest.approx(math.hypot(2.5 - 0.3, 0.1), abs=1e-3)
+    assert np.abs(drive.cross_track).max() < 1e-3
 
 
 def test_dwelling() -> None:
