@@ -240,3 +240,18 @@ def test_what_cannot_be_solved_is_refused() -> None:
         reversing_path(good, np.array([0, 0, 0, 2.0]), 1.0, 1.0)
     with pytest.raises(InputError, match="as many"):
         reversing_lengths(np.zeros((2, 4)), np.zeros((1, 4)), 1.0, 1.0)
+
+
+def test_words_that_are_left_out_are_nobodys_words() -> None:
+    """Whatever was in the memory before: a length that was only a limit may come back a digit smaller."""
+    from optplan.geometry._kernels import cusps
+
+    words = np.full((cusps.WORDS, cusps.COLUMNS), 2.0)
+    cusps.cusp_words(3.0, 1.0, 0.5, 1e-3, cusps.arcs(), words)
+    assert (words[:, 0] == 1e-3).all()
+    assert (words[:, 1] == cusps.NONE).all()
+    cusps.cusp_words(3.0, 1.0, 0.5, math.inf, cusps.arcs(), words)
+    there = np.isfinite(words[:, 0])
+    assert there.any()
+    assert ((words[:, 1] != cusps.NONE) == there).all()
+    assert (words[there, 0] >= math.hypot(3.0, 1.0)).all()

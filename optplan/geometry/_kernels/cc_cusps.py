@@ -18,7 +18,7 @@ from optplan.geometry._kernels.cc_reference import turn_pieces
 from optplan.geometry._kernels.cc_sharp import sharp_pieces, sharp_words
 from optplan.geometry._kernels.clothoid import clothoid_end
 from optplan.geometry._kernels.cusps import COLUMNS as COLUMNS_WITH_CUSPS
-from optplan.geometry._kernels.cusps import SEGMENTS, WORDS, cusp_words, segments_of
+from optplan.geometry._kernels.cusps import NONE, SEGMENTS, WORDS, cusp_words, segments_of
 from optplan.geometry._kernels.dubins import dubins_length
 
 FORWARDS, BACKWARDS, CUSPS = range(3)
@@ -92,7 +92,7 @@ def _with_cusps(
             gx = x1 - x0
             gy = y1 - y0
             row = cusp_words(c * gx + sn * gy, c * gy - sn * gx, t1 - t0, best - ramps, turns, words)
-            if words[row, 0] + ramps < best:
+            if words[row, 1] != NONE and words[row, 0] + ramps < best:
                 best = words[row, 0] + ramps
                 choice[0, 0], choice[0, 1] = segments_of(words[row], segments), 0.0
                 choice[1, 0], choice[1, 1] = gear1, gear2

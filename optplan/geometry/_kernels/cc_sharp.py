@@ -14,7 +14,7 @@ import math
 
 from optplan.compiled import njit
 from optplan.domain.arrays import FloatArray
-from optplan.geometry._kernels.cusps import KINDS, PLAIN, WORDS, arcs, cusp_words, segments_of
+from optplan.geometry._kernels.cusps import KINDS, NONE, PLAIN, WORDS, arcs, cusp_words, segments_of
 from optplan.geometry._kernels.spiral import spiral
 
 TWO_PI = 2.0 * math.pi
@@ -213,7 +213,7 @@ def sharp_words(
         cusp_words(x / radius, y / radius, theta, PROMISING * bound / radius, circles, words)
         for row in range(WORDS):
             # words without cusps are left to `cc_full`
-            if row % KINDS < PLAIN or words[row, 0] * radius >= PROMISING * bound:
+            if words[row, 1] == NONE or row % KINDS < PLAIN:
                 continue
             count = segments_of(words[row], segments)
             length = sharpened(segments, count, x, y, theta, a, b, radius, s, bound, table, work)

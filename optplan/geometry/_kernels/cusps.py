@@ -37,6 +37,8 @@ SEGMENTS = 5
 COLUMNS = 5 + SEGMENTS
 """of a word: length, number in `SIDES`, 1 or -1: gears as there, sides as there, order as there; then the segments'
 angles (rad) or lengths"""
+NONE = -1.0
+"""number of a word that is not there"""
 KINDS, PLAIN = 9, 2
 """kinds of words, the first of them without cusps"""
 WORDS = 2 * KINDS
@@ -241,10 +243,11 @@ def _symmetric(
 def cusp_words(x: float, y: float, theta: float, most: float, turns: FloatArray, best: FloatArray) -> int:
     """Fills the shortest words (WORDS, COLUMNS) between curvatures 0; returns the row of the shortest.
 
-    From the origin with heading 0 to x, y, theta. Words no shorter than `most` are left out: their length stays `most`.
+    From the origin with heading 0 to x, y, theta. Words no shorter than `most` are left out: their length stays `most`
+    and their number `NONE`, as lengths that come back through other units may have lost a digit.
     `turns` are the circles as `cc_reference.turn_table` gives them.
     """
-    best[:, 0] = most
+    best[:, 0], best[:, 1] = most, NONE
     back_x = x * math.cos(theta) + y * math.sin(theta)
     back_y = x * math.sin(theta) - y * math.cos(theta)
     for variant in range(4):
