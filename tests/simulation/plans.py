@@ -55,7 +55,8 @@ def path_of(pieces: list[Piece], tool: list[int] | None = None, heading: float =
 def taken(path: Path, rows: IntArray) -> Path:
     """Some pieces of a path."""
     columns: dict[str, Any] = {field.name: getattr(path, field.name) for field in fields(path)}
-    return Path(**{name: None if column is None else column[rows] for name, column in columns.items()})
+    chosen: dict[str, Any] = {name: None if column is None else column[rows] for name, column in columns.items()}
+    return Path(**chosen)
 
 
 def plan_of(path: Path, robot: Robot | None = None) -> Plan:

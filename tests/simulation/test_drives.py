@@ -229,6 +229,15 @@ def test_a_robot_that_cannot_arrive_ends() -> None:
     assert drive.time[-1] < 100
 
 
+@pytest.mark.parametrize("name", PATHS)
+def test_a_robot_that_measures_nonsense_ends(name: str) -> None:
+    for tracker in ("path-frame", "pure-pursuit"):
+        options = op.DriveOptions(tracker=tracker, noise=0.5, heading_noise=1.0, slip=0.5, lag=0.5, lost=1e6)
+        drive = op.simulate(plan_of(PATHS[name]), options)
+        assert np.isfinite(drive.cross_track).all()
+        assert drive.time[-1] < 200
+
+
 def test_a_cancel_is_heard() -> None:
     drive = op.simulate(plan_of(LINE), stop=StopRule(cancelled=lambda: True))
     assert not drive.finished

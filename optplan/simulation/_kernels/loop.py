@@ -40,6 +40,8 @@ AIMED = 2e-3
 """rad beside the heading to be turned to that count as it."""
 PATIENCE = 2.0
 """s given to both beyond the schedule."""
+OVERDUE = 30.0
+"""s beyond its schedule, and for a leg beyond as long again, after which the drive is given up."""
 NEAR = 0.1
 """m before the end of a leg from which patience may run out."""
 DIRECT = 4.0
@@ -143,7 +145,11 @@ def _decide(route: Route, m: Machine, state: FloatArray, whole: IntArray) -> tup
     p, q = route.phases[phase], route.turns[phase]
     x, y, heading = state[BELIEF_X], state[BELIEF_Y], state[BELIEF_H]
     if p[KIND] != LEG:
-        angle, _, _ = _turned(q[TURN], m.turn_rate, m.turn_acceleration, state[CLOCK])
+        angle, _, turning = _turned(q[TURN], m.turn_rate, m.turn_acceleration, state[CLOCK])
+        late = state[CLOCK] - turning - q[SPAN]
+        if late > PATIENCE:  # what it measures may never be still: this has to do
+            whole[STATUS] = LATE if late > OVERDUE else whole[STATUS]
+            return 0.0, 0.0, 0.0, 0.0, 0.0
         _, rate, _ = _turned(q[TURN], m.turn_rate, m.turn_acceleration, state[CLOCK] + STEP)
         return 0.0, rate + DIRECT * turned_to(q[BODY] + angle - heading), 0.0, rate, 0.0
     end = route.knots[p[LAST_KNOT], KNOT_S]
@@ -156,7 +162,7 @@ def _decide(route: Route, m: Machine, state: FloatArray, whole: IntArray) -> tup
     offset = (y - py) * math.cos(tangent) - (x - px) * math.sin(tangent)
     if math.hypot(x - px, y - py) > m.lost:
         whole[STATUS] = LOST
-    elif state[CLOCK] > 2.0 * q[SPAN] + 30.0:
+    elif state[CLOCK] > 2.0 * q[SPAN] + OVERDUE:
         whole[STATUS] = LATE
     wanted, _, knot = scheduled(route.knots, p[KNOT], p[LAST_KNOT], whole[TIMED], state[CLOCK])
     whole[TIMED] = knot
