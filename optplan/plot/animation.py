@@ -17,7 +17,8 @@ from optplan.domain.progress import Progress, ProgressCallback, silent
 from optplan.domain.result import Plan
 from optplan.geometry.paths import sampled
 from optplan.plot.films import gif_bytes, mp4_bytes, require_ffmpeg, write_folder
-from optplan.plot.stage import Ground, Stage, ground_of
+from optplan.plot.scene import Ground, ground_of
+from optplan.plot.stage import Stage
 
 if TYPE_CHECKING:
     from PIL.Image import Image

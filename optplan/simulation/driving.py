@@ -12,9 +12,10 @@ from optplan.domain.path import Trajectory
 from optplan.domain.progress import Progress, ProgressCallback
 from optplan.domain.robot import DiffDrive, Robot
 from optplan.domain.stop import StopRule
-from optplan.simulation._kernels import loop
-from optplan.simulation._kernels.loop import STEP, Machine
-from optplan.simulation._kernels.route import BODY, FIRST, KNOT, KNOT_S, Route, X, Y
+from optplan.simulation._kernels import loop, record
+from optplan.simulation._kernels import machine as m
+from optplan.simulation._kernels.machine import STEP, Machine
+from optplan.simulation._kernels.route import BODY, FIRST, GEAR, KNOT, KNOT_S, Route, X, Y
 from optplan.simulation.figures import energy_used, figures_of
 from optplan.simulation.options import DriveOptions
 from optplan.simulation.schedule import route_of
@@ -60,13 +61,13 @@ def drive_wheels(
         count = loop.drive(route, machine, state, whole, _noise(random, options, machine), rows, settings)
         numbers.append(rows[:count])
         tools.append(settings[:count])
-        progress(Progress("drive", min(float(state[loop.TIME]) / max(duration, STEP), 1.0)))
-        if whole[loop.STATUS] != loop.RUNNING:
-            reason = _REASONS[int(whole[loop.STATUS])]
-    if whole[loop.STATUS] == loop.LOST:
-        x, y, away = state[loop.TRUE_X], state[loop.TRUE_Y], machine.lost
+        progress(Progress("drive", min(float(state[m.TIME]) / max(duration, STEP), 1.0)))
+        if whole[m.STATUS] != loop.RUNNING:
+            reason = _REASONS[int(whole[m.STATUS])]
+    if whole[m.STATUS] == loop.LOST:
+        x, y, away = state[m.TRUE_X], state[m.TRUE_Y], machine.lost
         reason = f"lost the path: at ({x:.2f}, {y:.2f}) m it was more than {away:g} m beside it"
-    finished = whole[loop.STATUS] == loop.FINISHED
+    finished = whole[m.STATUS] == loop.FINISHED
     return _drive(np.concatenate(numbers), np.concatenate(tools), finished, reason, options, mobility, duration)
 
 
@@ -103,22 +104,30 @@ def _beginning(route: Route, options: DriveOptions) -> tuple[FloatArray, IntArra
         x, y, heading = options.start
         # counted like the path's headings, not whole turns away
         pose = (x, y, pose[2] + math.remainder(heading - pose[2], 2 * math.pi))
-    state[loop.TRUE_X : loop.TRUE_H + 1] = state[loop.BELIEF_X : loop.BELIEF_H + 1] = pose
-    state[loop.S] = route.knots[first[KNOT], KNOT_S]
-    whole[loop.ROW], whole[loop.TIMED] = first[FIRST], first[KNOT]
+    state[m.TRUE_X : m.TRUE_H + 1] = state[m.BELIEF_X : m.BELIEF_H + 1] = pose
+    state[m.S] = route.knots[first[KNOT], KNOT_S]
+    whole[m.ROW], whole[m.TIMED] = first[FIRST], first[KNOT]
     return state, whole
 
 
 def _first_row(machine: Machine, route: Route, state: FloatArray) -> FloatArray:
     row = np.zeros((1, 14))
-    x, y, heading = state[loop.TRUE_X : loop.TRUE_H + 1]
-    row[0, [loop.PX, loop.PY, loop.H]] = x, y, heading
-    row[0, loop.TX] = x + machine.ahead * math.cos(heading) + machine.right * math.sin(heading)
-    row[0, loop.TY] = y + machine.ahead * math.sin(heading) - machine.right * math.cos(heading)
+    x, y, heading = state[m.TRUE_X : m.TRUE_H + 1]
+    row[0, [record.PX, record.PY, record.H]] = x, y, heading
+    tool = _tool(machine, x, y, heading)
+    row[0, [record.TX, record.TY]] = tool
     begin = route.pieces[route.phases[0, FIRST], [X, Y]]
     direction = route.turns[0, BODY]
-    row[0, loop.CROSS] = (y - begin[1]) * math.cos(direction) - (x - begin[0]) * math.sin(direction)
+    planned = _tool(machine, begin[0], begin[1], direction)
+    # left of the direction of travel, which the front points against where the robot backs
+    across = (tool[1] - planned[1]) * math.cos(direction) - (tool[0] - planned[0]) * math.sin(direction)
+    row[0, record.CROSS] = route.turns[0, GEAR] * across
     return row
+
+
+def _tool(machine: Machine, x: float, y: float, heading: float) -> tuple[float, float]:
+    c, s = math.cos(heading), math.sin(heading)
+    return x + machine.ahead * c + machine.right * s, y + machine.ahead * s - machine.right * c
 
 
 def _noise(random: np.random.Generator, options: DriveOptions, machine: Machine) -> FloatArray:
@@ -137,21 +146,21 @@ def _drive(
     mobility: DiffDrive,
     planned: float,
 ) -> Drive:
-    wheels, accelerations = numbers[:, loop.WL : loop.WR + 1], numbers[:, loop.AL : loop.AR + 1]
-    time, cross, lag = numbers[:, loop.T], numbers[:, loop.CROSS], numbers[:, loop.LAG]
+    wheels, accelerations = numbers[:, record.WL : record.WR + 1], numbers[:, record.AL : record.AR + 1]
+    time, cross, lag = numbers[:, record.T], numbers[:, record.CROSS], numbers[:, record.LAG]
     energy = None
     if options.mass is not None:
         energy = energy_used(wheels, STEP, mobility.wheel_radius, options.mass, options.rolling)
     return Drive(
         time=time,
-        x=numbers[:, loop.PX],
-        y=numbers[:, loop.PY],
-        heading=numbers[:, loop.H],
-        speed=numbers[:, loop.V],
-        turn_rate=numbers[:, loop.OMEGA],
+        x=numbers[:, record.PX],
+        y=numbers[:, record.PY],
+        heading=numbers[:, record.H],
+        speed=numbers[:, record.V],
+        turn_rate=numbers[:, record.OMEGA],
         tool=tools,
-        tool_x=numbers[:, loop.TX],
-        tool_y=numbers[:, loop.TY],
+        tool_x=numbers[:, record.TX],
+        tool_y=numbers[:, record.TY],
         wheel_speed=wheels,
         wheel_acceleration=accelerations,
         cross_track=cross,

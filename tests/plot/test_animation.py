@@ -20,7 +20,8 @@ from PIL import Image, ImageColor
 import optplan as op
 from optplan.domain.result import Plan
 from optplan.plot.films import gif_bytes
-from optplan.plot.stage import HEAD, SAND, Ground, ground_of
+from optplan.plot.scene import SAND, Ground, ground_of
+from optplan.plot.stage import HEAD
 from optplan.timing.motion import motion
 from tests.simulation.plans import BEND, CORNERS, LINE, QUARTER, plan_of
 
