@@ -85,7 +85,13 @@ def drawings() -> None:
     op.draw(plotter, FOLDER / "plotter.png", overwrite=True, dpi=80)
 
 
-PICTURES = {"convergence": convergence, "square": square, "drawings": drawings}
+def film() -> None:
+    """The beach robot rakes the lion, as its wheels drive the plan."""
+    plan = op.plan(op.read(op.instance("lion")))
+    op.animate(plan, FOLDER / "lion.gif", drive=op.simulate(plan), fps=12, size=6, overwrite=True)
+
+
+PICTURES = {"convergence": convergence, "square": square, "drawings": drawings, "film": film}
 
 if __name__ == "__main__":
     for picture in sys.argv[1:] or PICTURES:

@@ -35,6 +35,8 @@ _HOMES = {
     "save_plan": "optplan.schema.plans",
     "draw": "optplan.plot",
     "draw_convergence": "optplan.plot",
+    "animate": "optplan.plot",
+    "simulate": "optplan.simulation",
     "compare_solvers": "optplan.compare",
     "load_case": "optplan.compare",
     "read_tsplib": "optplan.ordering.tsplib",
@@ -48,6 +50,7 @@ _HOMES = {
     "OrderOptions": "optplan.domain.options",
     "ConnectOptions": "optplan.domain.options",
     "TimeOptions": "optplan.domain.options",
+    "DriveOptions": "optplan.simulation.options",
     "FillSettings": "optplan.domain.job",
     "Drawing": "optplan.domain.job",
     "Plan": "optplan.domain.result",
@@ -92,6 +95,7 @@ if TYPE_CHECKING:
     from optplan.ordering.tsplib import read_tsplib as read_tsplib
     from optplan.pipeline import plan as plan
     from optplan.pipeline import plan_from as plan_from
+    from optplan.plot import animate as animate
     from optplan.plot import draw as draw
     from optplan.plot import draw_convergence as draw_convergence
     from optplan.problem import ordering_problem as ordering_problem
@@ -101,6 +105,8 @@ if TYPE_CHECKING:
     from optplan.robots import robot_names as robot_names
     from optplan.schema.plans import load_plan as load_plan
     from optplan.schema.plans import save_plan as save_plan
+    from optplan.simulation import simulate as simulate
+    from optplan.simulation.options import DriveOptions as DriveOptions
     from optplan.timing.fastest import profile as profile
 
 __all__ = [*_HOMES]

@@ -11,8 +11,10 @@ import typer
 
 from optplan.cli import output
 from optplan.cli.settings import (
+    Animate,
     Areas,
     Avoid,
+    Beside,
     Boundary,
     CanvasSize,
     Clearance,
@@ -25,23 +27,38 @@ from optplan.cli.settings import (
     ElementFill,
     Entries,
     EntryVertex,
+    FilmDuration,
+    FilmSize,
+    Fps,
+    Frames,
+    HeadingNoise,
+    Ideal,
     InnerFirst,
     Inset,
     Iterations,
     JerkLimit,
+    Lag,
     Links,
+    Lookahead,
     Margin,
+    Mass,
     Metric,
+    Motor,
+    Noise,
     OnCanvas,
     PowerLimit,
     Reversing,
     RobotName,
     Seed,
+    Simulated,
+    Slip,
     SolverName,
     Spacing,
+    SpeedUp,
     Start,
     TimeLimit,
     Tolerance,
+    Tracker,
     TransitSpeed,
     WorkSpeed,
     config_text,
@@ -511,28 +528,78 @@ def check(file: PlanFile, json: Json = False) -> None:
 def show(
     file: PlanFile,
     out: Annotated[
-        Path | None, typer.Option("--output", "-o", help=".png, .svg or .pdf; default: beside the plan.")
+        Path | None,
+        typer.Option("--output", "-o", help=".png, .svg, .pdf; a film: .gif, .mp4, .json. Default: beside the plan."),
     ] = None,
-    dpi: Annotated[int, typer.Option(min=20, max=1200, help="Pixels per inch of a PNG.")] = 150,
+    dpi: Annotated[
+        int | None, typer.Option(min=20, max=1200, help="Pixels per inch; default: 150, of a film 80.")
+    ] = None,
     convergence: Annotated[
         bool, typer.Option("--convergence", help="What the solver found and proved over time, instead of the plan.")
     ] = False,
+    animate: Animate = False,
+    frames: Frames = False,
+    simulated: Simulated = False,
+    duration: FilmDuration = None,
+    speed_up: SpeedUp = None,
+    fps: Fps = None,
+    size: FilmSize = None,
+    tracker: Tracker = "path-frame",
+    ideal: Ideal = False,
+    lag: Lag = None,
+    slip: Slip = None,
+    noise: Noise = None,
+    seed: Seed = None,
+    beside: Beside = False,
     force: Force = False,
+    quiet: Quiet = False,
     json: Json = False,
 ) -> None:
-    """Picture of a plan."""
+    """Picture of a plan, or a film of the robot driving it."""
     import optplan as op
+    from optplan.cli.driving import film, unwanted
 
+    flags = dict(locals())
+    unwanted(flags)
     plan = op.load_plan(file)
-    if convergence:
+    if animate:
+        target = film(plan, file, out, flags, force, quiet or json)
+    elif convergence:
         if plan.ordering is None:
             raise InputError("the plan has no order yet; run optplan order first", str(file))
         target = out or file.with_name(f"{file.stem}-convergence.png")
-        op.draw_convergence(plan.ordering, target, title=plan.job.name, overwrite=force, dpi=dpi)
+        op.draw_convergence(plan.ordering, target, title=plan.job.name, overwrite=force, dpi=dpi or 150)
     else:
         target = out or file.with_suffix(".png")
-        op.draw(plan, target, overwrite=force, dpi=dpi)
+        op.draw(plan, target, overwrite=force, dpi=dpi or 150)
     _tell_file(target, json)
+
+
+@app.command("simulate")
+def simulate_command(
+    file: PlanFile,
+    out: Annotated[
+        Path | None, typer.Option("--output", "-o", help="CSV of the drive, a line a control step.", show_default=False)
+    ] = None,
+    tracker: Tracker = "path-frame",
+    ideal: Ideal = False,
+    lag: Lag = None,
+    mass: Mass = None,
+    motor: Motor = None,
+    slip: Slip = None,
+    noise: Noise = None,
+    heading_noise: HeadingNoise = None,
+    seed: Seed = None,
+    lookahead: Lookahead = None,
+    beside: Beside = False,
+    force: Force = False,
+    quiet: Quiet = False,
+    json: Json = False,
+) -> None:
+    """Let a simulated robot drive a plan: how far off it gets, and what its wheels do."""
+    from optplan.cli.driving import simulate_and_print
+
+    simulate_and_print(file, out, dict(locals()), force, quiet, json)
 
 
 @app.command("export")

@@ -20,7 +20,15 @@ if TYPE_CHECKING:
     from optplan.domain.report import Report
     from optplan.domain.result import Plan
 
-_TITLES = {"cover": "covering", "order": "ordering", "connect": "connecting", "time": "timing", "verify": "verifying"}
+_TITLES = {
+    "cover": "covering",
+    "order": "ordering",
+    "connect": "connecting",
+    "time": "timing",
+    "verify": "verifying",
+    "drive": "driving",
+    "animate": "drawing",
+}
 
 
 def console(*, err: bool = False) -> Console:

@@ -79,6 +79,27 @@ ConstantSpeed = Annotated[
     str | None, typer.Option("--constant-speed", help="One speed everywhere, m/s: to compare with older planners.")
 ]
 
+Tracker = Annotated[str, typer.Option(help="path-frame or pure-pursuit.")]
+Ideal = Annotated[bool, typer.Option("--ideal", help="No lag, no slip, no noise.")]
+Lag = Annotated[str | None, typer.Option(help="Time constant of a wheel's speed, e.g. 50ms.")]
+Mass = Annotated[float | None, typer.Option(help="Of the robot, kg; gives an estimate of the energy.")]
+Motor = Annotated[float | None, typer.Option(help="Torque per lacking wheel speed, N m s/rad; gives the lag.")]
+Slip = Annotated[float | None, typer.Option(help="Standard deviation of each wheel's slip, e.g. 0.02.")]
+Noise = Annotated[str | None, typer.Option(help="Standard deviation of the measured place, e.g. 1cm.")]
+HeadingNoise = Annotated[str | None, typer.Option(help="Standard deviation of the measured heading, degrees.")]
+Lookahead = Annotated[str | None, typer.Option(help="Of pure pursuit, e.g. 50cm.")]
+Beside = Annotated[
+    bool, typer.Option("--tool-beside/--tool-on-path", help="Whether the tool sits beside the point on the path.")
+]
+
+Animate = Annotated[bool, typer.Option("--animate", help="A film of the robot driving the plan.")]
+Frames = Annotated[bool, typer.Option("--frames", help="The film as a folder of PNG files, or with -o x.json as JSON.")]
+Simulated = Annotated[bool, typer.Option("--simulated", help="The film of a simulated drive, not of the planned one.")]
+FilmDuration = Annotated[str | None, typer.Option("--duration", help="Of the film, e.g. 20s; default: 12s at most.")]
+SpeedUp = Annotated[float | None, typer.Option(help="How much faster than the robot the film is.")]
+Fps = Annotated[float | None, typer.Option(help="Frames a second of the film; default: 15.")]
+FilmSize = Annotated[float | None, typer.Option("--size", help="Longer side of the film, inches; default: 8.")]
+
 _PLACES = {
     "margin": ("page", "margin"),
     "tolerance": ("page", "tolerance"),

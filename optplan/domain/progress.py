@@ -13,7 +13,7 @@ class Progress:
 
     Parameters
     ----------
-    stage : "read", "cover", "order", "connect", "time" or "verify"
+    stage : "read", "cover", "order", "connect", "time", "verify", "drive" or "animate"
     fraction : 0..1, or None where the end is not known
     cost : best cost so far (ordering; metres or seconds), infinite when there is none
     bound : proven lower bound so far, minus infinity when there is none

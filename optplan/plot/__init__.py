@@ -1,4 +1,4 @@
-"""Pictures of plans, and of how solvers got there."""
+"""Pictures and films of plans, and pictures of how solvers got there."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from optplan.domain.errors import InputError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from optplan.domain.drive import Drive
     from optplan.domain.ordering import Ordering
+    from optplan.domain.progress import ProgressCallback
     from optplan.domain.result import Plan
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -62,6 +64,45 @@ def draw_convergence(
 
     several = [runs] if isinstance(runs, Ordering) else list(runs)
     _save(lambda: convergence_figure(several, title), Path(file), overwrite, dpi)
+
+
+def animate(
+    plan: Plan,
+    file: str | Path,
+    *,
+    drive: Drive | None = None,
+    seconds: float | None = None,
+    speed_up: float | None = None,
+    fps: float = 15.0,
+    size: float = 8.0,
+    dpi: float = 80.0,
+    overwrite: bool = False,
+    progress: ProgressCallback | None = None,
+) -> None:
+    """Write a film of the robot driving a plan: marks that grow in their true widths, travel, time and speed.
+
+    Parameters
+    ----------
+    plan : with a trajectory
+    file : .gif; .mp4 where ffmpeg is installed; .json for editors: a pose a frame; no ending: a folder of PNG frames
+    drive : what a simulated robot did (`optplan.simulate`); None shows the planned motion
+    seconds, speed_up : how long the film is, or how much faster than the robot; with neither 12 s at most
+    fps : frames a second
+    size, dpi : longer side of the ground, inches, and pixels per inch
+    overwrite : whether existing files may be replaced
+    progress : called with the share of frames that are drawn
+
+    A robot that would be smaller than 20 pixels is drawn that large. The middle of the robot follows the path, and with
+    it the tool, except in a drive whose tool sits beside it.
+
+    Raises
+    ------
+    InputError : a plan without speeds, an unknown ending, no ffmpeg, a file that exists, a number out of its range
+    LimitError : too many frames, or too large ones
+    """
+    from optplan.plot.animation import make_film
+
+    make_film(plan, Path(file), drive, seconds, speed_up, fps, size, dpi, overwrite, progress)
 
 
 def _save(make: Callable[[], Figure], target: Path, overwrite: bool, dpi: int) -> None:
