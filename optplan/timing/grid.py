@@ -70,7 +70,8 @@ def grid_of(path: Path, robot: Robot, options: Options, step: float = STEP, *, e
     """The intervals of a path; step : longest one where the curvature changes (even: anywhere), m."""
     mobility = robot.mobility
     half = mobility.track / 2 if isinstance(mobility, DiffDrive) else 0.0
-    piece, begin, end = _intervals(path, half, step, even)
+    joint = _joint_speeds(path, robot)
+    piece, begin, end = _intervals(path, half, step, even, (joint[:-1] == 0) & (joint[1:] == 0))
     sharpness, length = path.sharpness[piece], end - begin
     curvature = np.column_stack([path.curvature[piece] + sharpness * place for place in (begin, end)])
     limit, inside = _caps(path, robot, options, piece, curvature, sharpness)
@@ -78,7 +79,7 @@ def grid_of(path: Path, robot: Robot, options: Options, step: float = STEP, *, e
     cap[1:-1] = np.minimum(cap[1:-1], limit[:-1, 1])
     # ends of pieces: the last interval of each
     last = np.append(np.flatnonzero(np.diff(piece)) + 1, len(piece))
-    cap[np.append(0, last)] = np.minimum(cap[np.append(0, last)], _joint_speeds(path, robot) ** 2)
+    cap[np.append(0, last)] = np.minimum(cap[np.append(0, last)], joint**2)
     short = (length > 0) & (length < SHORTEST)
     level = short & (cap[:-1] > 0) & (cap[1:] > 0)
     acceleration = np.where(level, 0.0, np.where(short, 0.9 * mobility.acceleration, mobility.acceleration))
@@ -87,14 +88,18 @@ def grid_of(path: Path, robot: Robot, options: Options, step: float = STEP, *, e
     return Grid(piece, s, length, curvature, sharpness, cap, inside, acceleration, half)
 
 
-def _intervals(path: Path, half: float, step: float, even: bool) -> tuple[IntArray, FloatArray, FloatArray]:
+def _intervals(
+    path: Path, half: float, step: float, even: bool, alone: BoolArray
+) -> tuple[IntArray, FloatArray, FloatArray]:
     """Pieces, and where on them each interval begins and ends, m.
 
     Where a wheel's acceleration depends on the speed, intervals are so short that the passes of the sweep are exact:
     2 length r |kappa'| < |1 +- kappa r| for each wheel, unless it hardly moves.
     """
     cut = np.full(len(path), even) | ((half > 0) & (path.sharpness != 0))
-    count = np.where(cut, np.maximum(np.ceil(path.length / step), 1), 1).astype(np.int64)
+    # from rest to rest there has to be a place in between
+    least = np.where(alone, 2, 1)
+    count = np.where(cut, np.maximum(np.ceil(path.length / step), least), 1).astype(np.int64)
     piece = np.repeat(np.arange(len(path)), count)
     number = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)
     share = path.length[piece] / count[piece]

@@ -237,6 +237,19 @@ def test_a_finer_grid_gains_little(robot: Robot, seed: int) -> None:
     assert usual.duration <= fine.duration * 1.002
 
 
+@pytest.mark.parametrize("even", [False, True])
+@pytest.mark.parametrize("length", [3e-6, 0.004, 0.3])
+def test_from_rest_to_rest_there_is_a_way(length: float, even: bool) -> None:
+    """Also on a clothoid, or a line, shorter than the grid."""
+    bend = 0.0 if even else 0.8
+    path = clothoids(array([length]), array([0.0, bend]))
+    options = Options(time=TimeOptions(jerk=5.0) if even else TimeOptions())
+    made = profile(path, WEAK, options)
+    assert math.isfinite(made.duration)
+    assert made.v.max() > 0
+    assert made.v[[0, -1]].tolist() == [0, 0]
+
+
 def test_a_circle_is_driven_at_its_limit() -> None:
     """Up, around and down with the outer wheel's acceleration; v^2 kappa is at its limit in between."""
     zero, row = np.zeros(1), np.zeros(1, dtype=np.int64)
