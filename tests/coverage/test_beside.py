@@ -121,11 +121,14 @@ def test_a_towed_tool_on_an_arc_makes_the_robot_drive_another(ahead: float) -> N
 def test_a_direction_that_is_too_tight_is_no_way_and_is_named() -> None:
     hook = ring(0.35)  # counter-clockwise, and so tight that its inner parallel has no radius left
     forwards, backwards = refusals(hook, MARKER, OPTIONS)
-    assert "cusp" in forwards and not backwards
+    assert "cusp" in forwards
+    assert not backwards
     ways = traversals([hook], MARKER, OPTIONS)
-    assert len(ways) > 0 and ways.reverse.all()
+    assert len(ways) > 0
+    assert ways.reverse.all()
     (note,) = direction_notes([hook], MARKER, OPTIONS)
-    assert "'ring'" in note.text and "against" in note.text
+    assert "'ring'" in note.text
+    assert "against" in note.text
     with pytest.raises(InputError, match="'ring' cannot be driven forwards"):
         driven(hook, 0, False, MARKER, OPTIONS)
     with pytest.raises(InputError, match="'ring' cannot be driven"):
@@ -139,7 +142,8 @@ def test_bends_that_ask_for_both_directions_are_driven_apart() -> None:
     stroke = Stroke("twist", np.concatenate([half, other[1:]]))
     assert all(refusals(stroke, MARKER, OPTIONS))
     parts, source = split_at_stops([stroke], MARKER, OPTIONS)
-    assert len(parts) >= 2 and set(source) == {0}
+    assert len(parts) >= 2
+    assert set(source) == {0}
     assert all(not all(refusals(part, MARKER, OPTIONS)) for part in parts)
     assert sum(part.length for part in parts) == pytest.approx(stroke.length)
 
@@ -181,7 +185,8 @@ def test_the_tool_keeps_its_work_speed_between_knots(place: tuple[float, float])
 def test_the_judge_passes_plans_with_the_nozzle_at_the_side(name: str) -> None:
     options = Options(order=replace(OPTIONS.order, iterations=50))
     made = op.plan(op.read(op.instance(name)), MARKER, options)
-    assert made.report is not None and not [c.name for c in made.report.checks if c.verdict.value == "failed"]
+    assert made.report is not None
+    assert not [c.name for c in made.report.checks if c.verdict.value == "failed"]
 
 
 def test_the_judge_sees_a_tool_that_is_elsewhere() -> None:
