@@ -8,6 +8,7 @@ import numpy as np
 
 from optplan.connectors.families import family_of, metric_of, start_states
 from optplan.connectors.ways import ends_of
+from optplan.coverage.beside import refusals
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.errors import InputError, LimitError
 from optplan.domain.options import Options
@@ -34,7 +35,8 @@ def traversals(
 
     An open stroke can be driven from either end, a closed one from any of its vertices, in both directions where
     headings count (elsewhere the direction changes nothing that matters to the order). Strokes that are directed or
-    have a fixed entry offer less; `options.order.entries` thins the vertices out evenly.
+    have a fixed entry offer less; `options.order.entries` thins the vertices out evenly. With the tool beside the robot
+    the two directions are different ways, and those that it cannot drive are none.
 
     Parameters
     ----------
@@ -48,7 +50,7 @@ def traversals(
         kept.setdefault(a, []).append(i)
         kept.setdefault(b, []).append(j)
     speed = options.time.speeds(robot.mobility)[0]
-    both = metric_of(robot, options) != "euclid"
+    both = metric_of(robot, options) != "euclid" or robot.offset.aside
     most = options.order.entries or (DUBINS_ENTRIES if both else None)
     parts = [_ways(stroke, robot, options, both, most, kept.get(k, [])) for k, stroke in enumerate(strokes)]
     index = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
@@ -82,6 +84,12 @@ def _ways(
             offers = offers[:1]
         elif stroke.entry is not None:
             offers = offers[1:]
+    if robot.offset.aside and not stroke.is_stop:
+        refused = refusals(stroke, robot, options)
+        reasons = {refused[reverse] for _, reverse in offers}
+        offers = [offer for offer in offers if not refused[offer[1]]]
+        if not offers:
+            raise InputError(f"stroke {stroke.id!r} cannot be driven: {'; '.join(sorted(reasons))}")
     rows = [ends_of(stroke, vertex, reverse, robot, options) for vertex, reverse in offers]
     return (
         np.concatenate([vertex for vertex, _ in offers]),

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from optplan.connectors.driving import connect
 from optplan.connectors.families import Family, metric_of, start_states
 from optplan.connectors.ways import driven
-from optplan.coverage.stops import split_at_stops
+from optplan.coverage.splitting import split_at_stops
 from optplan.domain.errors import InputError
 from optplan.domain.job import Drawing
 from optplan.domain.options import ConnectOptions, Options, OrderOptions, PageOptions

@@ -93,7 +93,8 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
         stroke = cover.strokes[visit.stroke]
         if stroke.is_stop:
             # where headings count, the ordering problem has given the stop one
-            facing = visit.entry[3] if here is None or family.headings else here[2]
+            given = here is None or family.headings or robot.offset.aside
+            facing = visit.entry[3] if given or here is None else here[2]
             there = np.array([*visit.entry[:2], facing, 0.0])
             pieces = _pieces([_turn(there, 0.0)])
         else:

@@ -11,8 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from optplan.coverage.beside import Beside, beside
 from optplan.coverage.stops import curves_of, tolerance_of
 from optplan.domain.arrays import FloatArray, IntArray
+from optplan.domain.errors import InputError
 from optplan.domain.options import Options
 from optplan.domain.robot import Robot
 from optplan.domain.stroke import Stroke
@@ -42,19 +44,24 @@ def ends_of(stroke: Stroke, vertex: IntArray, reverse: bool, robot: Robot, optio
     """The ways that enter a stroke at these vertices (k,) in one direction; an open one has two."""
     count = len(vertex)
     if stroke.is_stop:
+        # headed east, with the tool at the place
         state = np.zeros((count, 5))
         state[:, : stroke.points.shape[1]] = stroke.points[0]
+        state[:, :2] += (-robot.offset.ahead, robot.offset.right)
         return Ends(state, state, np.zeros(count), np.zeros(count))
-    curves = curves_of(stroke, robot, options)
-    made = _polyline_ends(stroke, vertex, robot, options) if curves is None else _curve_ends(stroke, curves, vertex)
+    curves, way = curves_of(stroke, robot, options), _drivable(stroke, reverse, robot, options)
+    if curves is None or way is None:
+        made = _polyline_ends(stroke, vertex, robot, options)
+    else:
+        made = _curve_ends(stroke, curves, way, vertex)
     return _turned_round(made) if reverse else made
 
 
 def driven(stroke: Stroke, vertex: int, reverse: bool, robot: Robot, options: Options) -> Pieces:
     """The path of one way: clothoids, lines and arcs, and stops with turns, along a stroke of two points or more."""
-    curves = curves_of(stroke, robot, options)
-    if curves is not None:
-        return _curve_pieces(stroke, curves, vertex, reverse)
+    curves, way = curves_of(stroke, robot, options), _drivable(stroke, reverse, robot, options)
+    if curves is not None and way is not None:
+        return _curve_pieces(stroke, curves, way, vertex, reverse)
     points = stroke.points[:, :2]
     if stroke.closed:
         points = np.roll(points, -vertex, axis=0)
@@ -62,6 +69,15 @@ def driven(stroke: Stroke, vertex: int, reverse: bool, robot: Robot, options: Op
     if reverse:
         points = points[::-1]
     return rounded(points, tolerance_of(options.page, robot.tool), 0.0, options.connect.corner)
+
+
+def _drivable(stroke: Stroke, reverse: bool, robot: Robot, options: Options) -> Beside | None:
+    """The robot's curves in one direction, None where it has none; InputError where it cannot drive them."""
+    way = beside(stroke, reverse, robot, options)
+    if way is not None and way.refused:
+        direction = "backwards" if reverse else "forwards"
+        raise InputError(f"stroke {stroke.id!r} cannot be driven {direction}: {way.refused}")
+    return way
 
 
 def _turned_round(ends: Ends) -> Ends:
@@ -98,15 +114,15 @@ def _polyline_ends(stroke: Stroke, vertex: IntArray, robot: Robot, options: Opti
     return Ends(entry, leave, length, turned)
 
 
-def _curve_ends(stroke: Stroke, made: Smoothed, vertex: IntArray) -> Ends:
-    """Of the ways forwards along the curves."""
-    curves, count = made.curves, len(vertex)
+def _curve_ends(stroke: Stroke, made: Smoothed, way: Beside, vertex: IntArray) -> Ends:
+    """Of the ways forwards along the robot's curves, which are beside those that were made of the stroke."""
+    curves, count = way.curves, len(vertex)
     entry, leave = np.zeros((count, 5)), np.zeros((count, 5))
     flat = np.array([0, 1, 3, 4])
-    turns = np.abs(_turns(stroke, made))
+    turns = np.abs(_turns(stroke, made, curves))
     turned = np.full(count, turns.sum())
     if stroke.closed:
-        number, s = _places(stroke, made)
+        number, s = _places(stroke, made, way)
         for k, curve in enumerate(curves):
             own = np.flatnonzero(number[vertex] == k)
             at = evaluate(curve, s[vertex[own]])
@@ -128,9 +144,8 @@ def _last(curve: Curve) -> FloatArray:
     return np.array([*curve.end, curve.end_curvature[-1]])
 
 
-def _turns(stroke: Stroke, made: Smoothed) -> FloatArray:
+def _turns(stroke: Stroke, made: Smoothed, curves: tuple[Curve, ...]) -> FloatArray:
     """(k,) rad turned on the spot behind each curve; behind the last one of an open stroke 0."""
-    curves = made.curves
     if stroke.closed and len(made.stops) == 0:
         return np.zeros(1)
     after = np.array([curve.start[2] for curve in curves])
@@ -140,8 +155,8 @@ def _turns(stroke: Stroke, made: Smoothed) -> FloatArray:
     return turns
 
 
-def _places(stroke: Stroke, made: Smoothed) -> tuple[IntArray, FloatArray]:
-    """For each vertex (n,) of a ring the curve on which it lies, and the arc length there, m."""
+def _places(stroke: Stroke, made: Smoothed, way: Beside) -> tuple[IntArray, FloatArray]:
+    """For each vertex (n,) of a ring the curve on which it lies, and the robot's arc length there, m."""
     points = stroke.points[:, :2]
     count = len(points)
     first = int(made.stops[0]) if len(made.stops) else 0
@@ -159,14 +174,16 @@ def _places(stroke: Stroke, made: Smoothed) -> tuple[IntArray, FloatArray]:
             away = ring[inner] - here.points
             step = away[:, 0] * np.cos(here.heading) + away[:, 1] * np.sin(here.heading)
             along = np.clip(along + step, SAME, curve.total - SAME)
+        if way.curves is not made.curves:
+            along = np.clip(np.interp(along, way.tool[k], way.robot[k]), SAME, way.curves[k].total - SAME)
         number[low:high], s[inner] = k, along
     return np.roll(number, first), np.roll(s, first)
 
 
-def _curve_pieces(stroke: Stroke, made: Smoothed, vertex: int, reverse: bool) -> Pieces:
-    curves = list(made.curves)
+def _curve_pieces(stroke: Stroke, made: Smoothed, way: Beside, vertex: int, reverse: bool) -> Pieces:
+    curves = list(way.curves)
     if stroke.closed:
-        number, s = _places(stroke, made)
+        number, s = _places(stroke, made, way)
         k, here = int(number[vertex]), float(s[vertex])
         if here > 0:
             curves = [part(curves[k], here, curves[k].total), *curves[k + 1 :], *curves[:k], part(curves[k], 0.0, here)]

@@ -10,7 +10,8 @@ import numpy as np
 
 from optplan.coverage.placing import Line, canvas_of, counter_clockwise, placed, placement
 from optplan.coverage.relations import connections, inner_before_outer, of_pieces
-from optplan.coverage.stops import split_at_stops, tight_notes, tolerance_of
+from optplan.coverage.splitting import direction_notes, split_at_stops
+from optplan.coverage.stops import tight_notes, tolerance_of
 from optplan.coverage.zigzag import zigzag
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError, LimitError, located
@@ -47,7 +48,7 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
         reason = "every element is white, without style, or a start point"
         raise InputError(f"nothing in this drawing is to be drawn: {reason}", job.name)
     canvas = canvas_of(options.page, robot)
-    notes = [*read.notes, *_offset_note(robot), *_loop_note(robot, canvas, options)]
+    notes = [*read.notes, *_loop_note(robot, canvas, options)]
     if canvas is None:
         notes.append(Note("notice", robot.name, "has no canvas: the drawing keeps the size it has on paper"))
     tolerance = tolerance_of(options.page, robot.tool)
@@ -75,6 +76,7 @@ def cover_drawing(job: Drawing, robot: Robot, options: Options, progress: Progre
     notes += tight_notes(strokes, robot, options, progress)
     inner = inner_before_outer(strokes) if options.cover.inner_first else []
     strokes, source = split_at_stops(strokes, robot, options)
+    notes += direction_notes(strokes, robot, options)
     if not strokes:
         raise InputError("nothing in this drawing is to be drawn on this canvas", job.name)
     travels = [k for k, stroke in enumerate(strokes) if stroke.tool == RAISED]
@@ -105,14 +107,6 @@ def _loop_note(robot: Robot, canvas: Canvas | None, options: Options) -> list[No
     text = (
         f"turns in loops of {1 / curvature:.2g} m radius, which may leave a canvas with a margin of {canvas.margin:g} m"
     )
-    return [Note("notice", robot.name, text)]
-
-
-def _offset_note(robot: Robot) -> list[Note]:
-    tool = robot.tool
-    if tool.right == 0 and tool.ahead == 0:
-        return []
-    text = f"the plan is the path of the tool, {tool.right:g} m right and {tool.ahead:g} m ahead of the robot's middle"
     return [Note("notice", robot.name, text)]
 
 

@@ -1,11 +1,9 @@
-"""Where a robot has to stop along its strokes: as curves that it can follow, and split where it may not turn."""
+"""Where a robot has to stop along its strokes, as curves that it can follow."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
 
@@ -20,6 +18,9 @@ from optplan.geometry.smoothing import Smoothed, smoothed
 
 CREEP = 0.25
 """Share of the work speed to which a robot slows down for a tight curve before it gives up following it."""
+
+ROOM = 0.9
+"""Share of tolerance and limits that the line of a tool beside the robot may use."""
 
 
 def tolerance_of(page: PageOptions, tool: Tool) -> float:
@@ -43,7 +44,11 @@ def curves_of(stroke: Stroke, robot: Robot, options: Options) -> Smoothed | None
     if stroke.is_stop or not follows_curves(robot, options):
         return None
     tolerance = tolerance_of(options.page, robot.tool)
-    return _curves(stroke, tolerance, *work_limits(robot, options), options.connect.corner)
+    kappa_max, sigma_max = work_limits(robot, options)
+    if robot.offset.aside:
+        # the robot's own path beside this one is not exact, and changes its curvature a little faster in places
+        tolerance, kappa_max, sigma_max = ROOM * tolerance, ROOM * kappa_max, ROOM * sigma_max
+    return _curves(stroke, tolerance, kappa_max, sigma_max, options.connect.corner)
 
 
 # covering, ordering and connecting all ask
@@ -64,20 +69,6 @@ def stops_of(stroke: Stroke, robot: Robot, options: Options) -> IntArray:
     return np.flatnonzero(found.corner) + (0 if stroke.closed else 1)
 
 
-def split_at_stops(strokes: list[Stroke], robot: Robot, options: Options) -> tuple[list[Stroke], list[int]]:
-    """Strokes without stops, for a robot that cannot turn on the spot; other robots get them as they are.
-
-    Returns
-    -------
-    parts : what the strokes are split into, in their order
-    source : of each part, the index of the stroke that it is a part of
-    """
-    if robot.mobility.turns_on_spot:
-        return strokes, list(range(len(strokes)))
-    parts = [_split(stroke, stops_of(stroke, robot, options)) for stroke in strokes]
-    return [part for own in parts for part in own], [k for k, own in enumerate(parts) for _ in own]
-
-
 def tight_notes(
     strokes: list[Stroke], robot: Robot, options: Options, progress: ProgressCallback = silent
 ) -> list[Note]:
@@ -94,24 +85,9 @@ def tight_notes(
         steps = np.diff(ring, axis=0)
         bend = np.abs(wrapped(np.diff(np.arctan2(steps[:, 1], steps[:, 0]))))
         counts[stroke.element] = counts.get(stroke.element, 0) + int((bend[stops] <= corner).sum())
-    does = "stops and turns" if robot.mobility.turns_on_spot else "lifts the tool and comes back"
+    turns = robot.mobility.turns_on_spot and not robot.offset.aside
+    does = "stops and turns" if turns else "lifts the tool and comes back"
     text = f"bends more than a radius of {1 / limits.curvature:.2g} m and a sharpness of {limits.sharpness:.2g} 1/m^2"
     return [
         Note("notice", element, f"{text} allow: the robot {does} along it", n) for element, n in counts.items() if n
-    ]
-
-
-def _split(stroke: Stroke, stops: IntArray) -> list[Stroke]:
-    if len(stops) == 0:
-        return [stroke]
-    if stroke.closed:  # begin at a stop, and come back to it
-        points = np.roll(stroke.points, -int(stops[0]), axis=0)
-        points = np.concatenate([points, points[:1]])
-        cuts = [0, *(stops[1:] - stops[0]).tolist(), len(points) - 1]
-    else:
-        points = stroke.points
-        cuts = [0, *stops.tolist(), len(points) - 1]
-    return [
-        replace(stroke, id=f"{stroke.id}~{k}", points=points[a : b + 1], closed=False, entry=None)
-        for k, (a, b) in enumerate(pairwise(cuts), start=1)
     ]

@@ -19,6 +19,24 @@ class CurvatureLimits(NamedTuple):
     """sigma_max = max |dkappa/ds|, 1/m^2"""
 
 
+class ToolPlace(NamedTuple):
+    """Where a tool sits, from the robot's reference point and in the direction in which its body points."""
+
+    right: float
+    """m"""
+    ahead: float
+    """m; negative: behind"""
+
+    @property
+    def aside(self) -> bool:
+        """Whether the tool is anywhere but in the middle."""
+        return self != (0.0, 0.0)
+
+
+MIDDLE = ToolPlace(0.0, 0.0)
+"""Of a tool at the robot's reference point."""
+
+
 @dataclass(frozen=True)
 class ToolSetting:
     """One way of holding the tool.
@@ -298,6 +316,13 @@ class Robot:
     mobility: Mobility
     canvas: Canvas | None = None
     sources: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def offset(self) -> ToolPlace:
+        """Where the tool sits in the robot's frame; in the middle for robots that need no heading."""
+        if isinstance(self.mobility, DiffDrive):
+            return ToolPlace(self.tool.right, self.tool.ahead)
+        return MIDDLE
 
     @property
     def heading_counts(self) -> bool:

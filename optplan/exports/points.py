@@ -13,13 +13,17 @@ from optplan.domain.errors import InputError, LimitError
 from optplan.domain.path import RAISED
 from optplan.domain.result import Plan
 from optplan.geometry.paths import States, sampled
+from optplan.geometry.tools import tool_positions
 from optplan.timing.sampling import moments
 
 SPACING = 0.05
 """Greatest distance between points unless asked otherwise, m."""
 MAX_POINTS = 5_000_000
 """Most points that an export may have."""
-COLUMNS = ("s", "t", "x", "y", "z", "heading", "curvature", "speed", "tool", "code", "stroke", "stop", "gear")
+COLUMNS = (
+    *("s", "t", "x", "y", "z", "heading", "curvature", "speed", "tool", "code", "stroke", "stop", "gear"),
+    *("tool_x", "tool_y"),
+)
 
 
 class ToolPoints(NamedTuple):
@@ -36,7 +40,8 @@ class ToolPoints(NamedTuple):
 def csv_text(plan: Plan, spacing: float = SPACING) -> str:
     """Equally spaced points as CSV, one header line; m, s, rad, 1/m, m/s. `tool` holds from this point to the next.
 
-    Heading and curvature are those of travel; where `gear` is -1 the robot drives backwards.
+    x, y, heading and curvature are those of the robot's reference point, in the direction of travel; where `gear` is -1
+    it drives backwards. tool_x and tool_y are where its tool is.
 
     Raises
     ------
@@ -54,6 +59,7 @@ def csv_text(plan: Plan, spacing: float = SPACING) -> str:
         arriving[-1] = False
         t, speed = moments(plan.trajectory, s, arriving)
     strokes = [] if plan.cover is None else [stroke.id for stroke in plan.cover.strokes]
+    tools = tool_positions(states.position, states.heading, path.gear[states.piece], plan.robot.offset)
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -75,6 +81,7 @@ def csv_text(plan: Plan, spacing: float = SPACING) -> str:
                 strokes[owner] if 0 <= owner < len(strokes) else "",
                 int(stop[k]),
                 path.gear[piece],
+                *(f"{value:.6f}" for value in tools[k, :2]),
             ]
         )
     return out.getvalue()

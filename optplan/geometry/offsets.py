@@ -10,6 +10,7 @@ from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.errors import InputError, LimitError
 from optplan.geometry.curves import Curve, CurveStates, cuts, evaluate, positive, sampled_curve
 from optplan.geometry.hermite import hermite_clothoids
+from optplan.geometry.splines import through
 
 _PROBES = 8
 _ROUNDS = 14
@@ -76,6 +77,40 @@ def offset(curve: Curve, distance: float, tolerance: float = 1e-4) -> Approximat
     raise LimitError(f"a parallel curve does not come within {tolerance:g} m; {error.max():g} m reached")
 
 
+def smooth_offset(curve: Curve, distance: float, tolerance: float, *, closed: bool = False) -> Approximation:
+    """The parallel curve, `distance` (m) to the left, of continuous curvature where that of the curve is.
+
+    Lines and arcs are exact. Else a spline of clothoids is put through places beside the ends of all pieces, with the
+    curve's headings at both ends; pieces are halved until it is within `tolerance` (m).
+
+    Parameters
+    ----------
+    closed : the curve ends as it begins, and so does its parallel
+
+    Raises
+    ------
+    InputError, LimitError : as `offset`
+    """
+    if distance == 0 or not curve.sharpness.any():
+        return offset(curve, distance, tolerance)
+    _no_cusp(1 - distance * np.array([curve.curvature, curve.end_curvature]), distance)
+    turn = np.maximum(np.abs(curve.curvature), np.abs(curve.end_curvature)) * curve.length
+    parts = np.maximum(1, np.ceil(turn)).astype(np.int64)
+    error = np.full(len(curve), np.inf)
+    for _ in range(_ROUNDS):
+        s = cuts(curve, parts)
+        at = offset_states(curve, distance, s)
+        made = through(at.points, at.heading, closed)
+        if made is None:
+            parts *= 2
+            continue
+        error = np.maximum.reduceat(_aside(made, curve, distance, s), np.cumsum(parts) - parts)
+        if error.max() <= tolerance:
+            return Approximation(made, float(error.max()))
+        parts[error > tolerance] *= 2
+    raise LimitError(f"a parallel curve does not come within {tolerance:g} m; {error.max():g} m reached")
+
+
 def _fitted(curve: Curve, distance: float, parts: IntArray, start: FloatArray) -> tuple[Curve, FloatArray]:
     """The candidate with so many parts a piece, and its greatest error on each piece, m."""
     s = cuts(curve, parts)
@@ -89,14 +124,20 @@ def _fitted(curve: Curve, distance: float, parts: IntArray, start: FloatArray) -
     sigma = np.where(exact, 0.0, sigma)
     length = np.where(exact, np.diff(s) * stretch, length)
     made = Curve(start, kappa, sigma, length)
+    worst = _aside(made, curve, distance, s)
+    worst[~fit.converged & ~exact] = np.inf
+    return made, np.maximum.reduceat(worst, np.cumsum(parts) - parts)
+
+
+def _aside(made: Curve, curve: Curve, distance: float, s: FloatArray) -> FloatArray:
+    """Greatest distance (k,) between pieces of a candidate and the parallel of the parts between s (k + 1,), m."""
     # beside equal fractions of a part the two are nearly abreast; what is left along the curve is no distance
     fraction = np.arange(1, _PROBES) / _PROBES
     ours = evaluate(made, (made.offsets[:-1, None] + made.length[:, None] * fraction).ravel())
     true = offset_states(curve, distance, (s[:-1, None] + np.diff(s)[:, None] * fraction).ravel())
     aside = (ours.x - true.x) * -np.sin(true.heading) + (ours.y - true.y) * np.cos(true.heading)
-    worst = np.abs(aside).reshape(-1, _PROBES - 1).max(axis=1)
-    worst[~fit.converged & ~exact] = np.inf
-    return made, np.maximum.reduceat(worst, np.cumsum(parts) - parts)
+    worst: FloatArray = np.abs(aside).reshape(-1, _PROBES - 1).max(axis=1)
+    return worst
 
 
 def _no_cusp(stretch: FloatArray, distance: float) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.geometry.curves import Curve, evaluate, sampled_curve
 from optplan.geometry.rounding import STRAIGHT, wrapped
-from optplan.geometry.splines import euler_splines
+from optplan.geometry.splines import OVERLAP, euler_splines
 
 SHARE = 0.8
 """Of the tolerance that samples may use: between them a curve strays a little more."""
@@ -33,8 +33,6 @@ BROKEN = 1e-4
 """A limit broken by less, as a share of it, is rounding of the solver."""
 FEW = 8
 """Up to so many stretches that break a limit are cut one after the other; more of them all at once, to save time."""
-_OVERLAP = 24
-"""Samples by which a ring overlaps itself when a spline is put through it: an end is felt 0.27 as much a sample on."""
 _ROUNDS = 5
 """Attempts to make a curve keep between its samples what it keeps at them."""
 
@@ -274,7 +272,7 @@ def _cuts(at: FloatArray, s: FloatArray, excess: FloatArray) -> list[int]:
 def _spline(places: FloatArray, closed: bool) -> Curve | None:
     """A G2 curve through samples (n + 1, 2); None when none was found."""
     n = len(places) - 1
-    lap = _OVERLAP if closed else 0
+    lap = OVERLAP if closed else 0
     along = places[np.arange(-lap, n + lap + 1) % n] if closed else places
     free = np.array([np.nan])
     made = euler_splines(along[None], free, free, round_ends=True)

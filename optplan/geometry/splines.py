@@ -20,6 +20,8 @@ from optplan.geometry.rounding import wrapped
 
 KINDS = "vc[]"
 """Kinds of control points: v corner, c smooth (G2), [ a line before and a curve after, tangent, ] the reverse."""
+OVERLAP = 24
+"""Points by which a ring overlaps itself when a spline is put through it: an end is felt 0.27 as much a point on."""
 _ROUNDS = 40
 
 
@@ -153,6 +155,22 @@ def _first_headings(r: FloatArray, angle: FloatArray) -> FloatArray:
         return np.concatenate([angle, angle], axis=1)
     first, last = angle[:, :1] - bend[:, :1] * share[:, :1], angle[:, -1:] + bend[:, -1:] * (1 - share[:, -1:])
     return np.concatenate([first, inner, last], axis=1)
+
+
+def through(points: FloatArray, heading: FloatArray, closed: bool) -> Curve | None:
+    """The spline through points (n, 2) m with the first and the last of headings (n,) rad; None when none was found.
+
+    The points of a ring (`closed`) repeat the first; it ends as it begins, in curvature too.
+    """
+    n = len(points) - 1
+    lap = min(OVERLAP, n) if closed else 0
+    order = np.arange(-lap, n + lap + 1) % n if closed else np.arange(n + 1)
+    made = euler_splines(points[order][None], heading[order[:1]], heading[order[-1:]])
+    if not made.converged[0]:
+        return None
+    own = slice(lap, lap + n)
+    start = np.array([*points[0], made.heading[0, lap]])
+    return Curve(start, made.curvature[0, own], made.sharpness[0, own], made.length[0, own])
 
 
 def euler_spline(

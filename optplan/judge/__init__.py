@@ -10,7 +10,18 @@ from optplan.domain.errors import InputError
 from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check, Report
 from optplan.domain.result import Plan
-from optplan.judge import _areas, _continuity, _coverage, _finished, _gears, _motion, _ordering, _strokes, _wheels
+from optplan.judge import (
+    _areas,
+    _continuity,
+    _coverage,
+    _finished,
+    _gears,
+    _motion,
+    _ordering,
+    _strokes,
+    _tool,
+    _wheels,
+)
 from optplan.judge._findings import deviation_limit, page_tolerance, unchecked
 from optplan.judge._integrate import integrate
 from optplan.judge._speeds import speeds
@@ -23,8 +34,8 @@ _COVER_CHECKS = ("strokes", "deviation", "precedence", "connections")
 def verify(plan: Plan) -> Report:
     """Measure a plan and hold it against its robot's limits.
 
-    The path is taken as that of the tool's middle. Sections that a plan does not have yet are not judged; the checks
-    that need them are in the report all the same, with a note.
+    The path is that of the robot's reference point; marks are where it carries its tool. Sections that a plan does not
+    have yet are not judged; the checks that need them are in the report all the same, with a note.
 
     Raises
     ------
@@ -35,6 +46,7 @@ def verify(plan: Plan) -> Report:
     path, robot, options, cover = plan.path, plan.robot, plan.options, plan.cover
     limit = deviation_limit(robot, options)
     samples = integrate(path, limit / 100)
+    carried, marks = _tool.of_tool(path, samples, robot)
     profile = None if plan.trajectory is None else speeds(path, plan.trajectory)
 
     steps, orders = _continuity.curvature_steps(path, samples, profile)
@@ -53,22 +65,23 @@ def verify(plan: Plan) -> Report:
     if cover is None:
         checks += unchecked(_COVER_CHECKS, "the plan has no strokes")
     else:
-        done, deviation, exact = _strokes.strokes(path, samples, cover, limit)
-        checks += [done, deviation, _strokes.precedence(path, cover), _strokes.connections(path, samples, cover, limit)]
+        done, deviation, exact = _strokes.strokes(carried, marks, cover, limit)
+        links = _strokes.connections(carried, marks, cover, limit)
+        checks += [done, deviation, _strokes.precedence(path, cover), links]
     if plan.visits is None:
         checks += unchecked(["visits"], "the plan does not say which ways of driving were chosen")
     else:
         checks.append(_strokes.visits(path, samples, plan.visits))
-    checks.append(_strokes.tool(path, robot))
+    checks += [_strokes.tool(path, robot), *_tool.swirls(path, robot)]
     if cover is None:
         names = ["canvas", "margin", _areas.NAME, *_coverage.NAMES, _finished.NAME, _wheels.NAME]
         checks += unchecked(names, "the plan has no strokes")
     else:
         checks += [
-            *_strokes.canvas(path, samples, cover, page_tolerance(robot, options)),
+            *_strokes.canvas(path, samples, marks, cover, page_tolerance(robot, options)),
             _areas.areas(path, samples, cover, options),
         ]
-        covered, areas = _coverage.coverage(path, samples, cover, robot, limit, exact)
+        covered, areas = _coverage.coverage(carried, marks, cover, robot, limit, exact)
         wheels = _wheels.wheels_over_finished(path, samples, cover, robot, options, plan.trajectory)
         checks += [*covered, _finished.over_finished(path, samples, cover, robot), wheels]
     if plan.trajectory is None or profile is None:

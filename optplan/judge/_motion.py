@@ -11,6 +11,7 @@ from optplan.domain.options import Options
 from optplan.domain.path import RAISED, Path, Trajectory
 from optplan.domain.report import Check
 from optplan.domain.robot import DiffDrive, Robot
+from optplan.judge import _tool
 from optplan.judge._continuity import steepest
 from optplan.judge._findings import (
     GAP,
@@ -38,7 +39,7 @@ def motion(path: Path, trajectory: Trajectory, profile: Speeds, robot: Robot, op
     checks = [
         _time(path, trajectory, profile, robot),
         _rest(trajectory),
-        _speed(path, profile, robot, options),
+        _tool.speed(path, profile, robot, *work_and_transit_speed(robot, options)),
         _acceleration(path, trajectory, profile, robot),
         _wheels(path, profile, robot),
         _wheel_acceleration(path, profile, robot),
@@ -175,21 +176,6 @@ def _rest(trajectory: Trajectory) -> Check:
         else (f"The robot begins at {ends[0]:.4g} m/s and ends at {ends[1]:.4g} m/s.")
     )
     return held("rest", float(ends.max()), 0.0, "m/s", detail=detail, slack=GAP)
-
-
-def _speed(path: Path, profile: Speeds, robot: Robot, options: Options) -> Check:
-    """Largest speed, m/s, as a share of its limit with the tool down or up."""
-    work, transit = work_and_transit_speed(robot, options)
-    if len(profile.row) == 0:
-        return held("speed", 0.0, transit, "m/s", detail="Nothing moves.")
-    limit = np.where(path.tool[profile.row] > RAISED, work, transit)
-    v = np.maximum(profile.before, profile.after)
-    worst = int(np.argmax(v / limit))
-    row = int(profile.row[worst])
-    state = "down" if path.tool[row] > RAISED else "up"
-    detail = f"Piece {row} is driven closest to its limit, with the tool {state}."
-    top = float(limit[worst])
-    return held("speed", float(v[worst]), top, "m/s", place_of(path.start[row]), detail, slack=RELATIVE * top)
 
 
 def _acceleration(path: Path, trajectory: Trajectory, profile: Speeds, robot: Robot) -> Check:

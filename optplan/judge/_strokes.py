@@ -162,10 +162,11 @@ def tool(path: Path, robot: Robot) -> Check:
     return held("tool", metres, 0.0, "m", place, detail)
 
 
-def canvas(path: Path, samples: Samples, cover: Cover, tolerance: float) -> list[Check]:
-    """The checks `canvas` and `margin`: how far the driven line (the middle of the mark) goes beyond them, m.
+def canvas(path: Path, samples: Samples, marks: Samples, cover: Cover, tolerance: float) -> list[Check]:
+    """The checks `canvas` and `margin`: how far the driven line goes beyond them, m.
 
-    What is drawn lies within them, what is driven may leave that by the tolerance for rounding (m).
+    With the tool down that is the middle of the mark, with the tool up the middle of the robot. What is drawn lies
+    within them, what is driven may leave that by the tolerance for rounding (m).
     """
     slack = tolerance + GAP
     if cover.canvas is None:
@@ -173,22 +174,23 @@ def canvas(path: Path, samples: Samples, cover: Cover, tolerance: float) -> list
     size = np.array([cover.canvas.width, cover.canvas.height])
     if len(samples.points) == 0:
         return [held(name, 0.0, 0.0, "m", detail="Nothing is driven.") for name in ("canvas", "margin")]
-    beyond = _beyond(samples.points, size, 0.0)
+    marking = path.tool[samples.row] > RAISED
+    points = samples.points if marks is samples else np.where(marking[:, None], marks.points, samples.points)
+    beyond = _beyond(points, size, 0.0)
     worst = int(np.argmax(beyond))
     detail = "All of the path is on the canvas." if beyond[worst] <= slack else "The path leaves the canvas."
-    place = place_of(samples.points[worst])
+    place = place_of(points[worst])
     outside = held("canvas", max(float(beyond[worst]), 0.0), 0.0, "m", place, detail, slack=slack)
 
-    inside = _beyond(samples.points, size, cover.canvas.margin)
-    marking = path.tool[samples.row] > RAISED
-    marks = np.where(marking, inside, 0.0)
-    worst = int(np.argmax(marks))
-    if marks[worst] > slack:
-        place = place_of(samples.points[worst])
-        return [outside, held("margin", marks[worst], 0.0, "m", place, "Marks lie in the margin.", slack=slack)]
+    inside = _beyond(points, size, cover.canvas.margin)
+    marked = np.where(marking, inside, 0.0)
+    worst = int(np.argmax(marked))
+    if marked[worst] > slack:
+        place = place_of(points[worst])
+        return [outside, held("margin", marked[worst], 0.0, "m", place, "Marks lie in the margin.", slack=slack)]
     worst = int(np.argmax(inside))
     if inside[worst] > slack:
-        place = place_of(samples.points[worst])
+        place = place_of(points[worst])
         return [outside, noted("margin", inside[worst], "m", "The robot travels through the margin.", place)]
     return [outside, held("margin", 0.0, 0.0, "m", detail="All of the path keeps out of the margin.")]
 

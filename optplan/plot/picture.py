@@ -11,8 +11,9 @@ from optplan.domain.arrays import BoolArray, FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.path import RAISED, Path
 from optplan.domain.result import Plan
-from optplan.domain.robot import DiffDrive
+from optplan.domain.robot import MIDDLE, DiffDrive, ToolPlace
 from optplan.geometry.paths import along
+from optplan.geometry.tools import tool_positions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -114,9 +115,9 @@ def _draw_strokes(axes: Axes, plan: Plan, colours: _Colours, scale: float) -> No
 def _draw_path(axes: Axes, plan: Plan, path: Path, colours: _Colours, scale: float) -> None:
     from matplotlib.collections import LineCollection
 
-    down = path.tool != RAISED
+    down, place = path.tool != RAISED, plan.robot.offset
     for tool, setting in enumerate(plan.robot.tool.settings[1:], start=1):
-        lines = _lines(path, (path.tool == tool) & (path.length > 0))
+        lines = _lines(path, (path.tool == tool) & (path.length > 0), place)
         axes.add_collection(
             LineCollection(
                 lines,
@@ -134,6 +135,9 @@ def _draw_path(axes: Axes, plan: Plan, path: Path, colours: _Colours, scale: flo
     forwards = between & ~backwards
     axes.add_collection(LineCollection(_lines(path, forwards), colors=colours.travel, linewidths=0.9, zorder=3))
     axes.add_collection(LineCollection(_lines(path, backwards), colors=colours.back, linewidths=1.3, zorder=3))
+    if place.aside:
+        beside = _lines(path, moving & down)
+        axes.add_collection(LineCollection(beside, colors=colours.text, linewidths=0.6, zorder=3))
     cusps = path.start[path.cusps]
     axes.plot(cusps[:, 0], cusps[:, 1], "D", ms=3, color=colours.back, mec="white", mew=0.5, zorder=5)
     axes.add_collection(
@@ -146,8 +150,8 @@ def _draw_path(axes: Axes, plan: Plan, path: Path, colours: _Colours, scale: flo
     _numbers(axes, plan, colours, scale)
 
 
-def _lines(path: Path, rows: BoolArray) -> list[FloatArray]:
-    """Polylines (k, 2) of consecutive rows that follow one another without a gap."""
+def _lines(path: Path, rows: BoolArray, place: ToolPlace = MIDDLE) -> list[FloatArray]:
+    """Polylines (k, 2) of consecutive rows that follow one another without a gap: where the tool at a place goes."""
     chosen = np.flatnonzero(rows)
     if len(chosen) == 0:
         return []
@@ -156,7 +160,8 @@ def _lines(path: Path, rows: BoolArray) -> list[FloatArray]:
     piece = np.repeat(chosen, parts + 1)
     begin = np.repeat(np.cumsum(parts + 1) - parts - 1, parts + 1)
     share = (np.arange(len(piece)) - begin) / np.repeat(parts, parts + 1)
-    points = along(path, piece, path.length[piece] * share).position[:, :2]
+    states = along(path, piece, path.length[piece] * share)
+    points = tool_positions(states.position, states.heading, path.gear[piece], place)[:, :2]
     first, last = np.cumsum(parts + 1) - parts - 1, np.cumsum(parts + 1) - 1
     # a piece goes on with the one before it when only turns on the spot lie between, and no gap
     rank = np.searchsorted(np.flatnonzero(path.length > 0), chosen)
@@ -240,6 +245,8 @@ def _draw_places(axes: Axes, plan: Plan, colours: _Colours) -> None:
     if plan.path is not None:
         axes.plot([], [], "-", color=colours.work, lw=4, label="tool down")
         axes.plot([], [], "-", color=colours.travel, lw=1, label="tool up")
+        if plan.robot.offset.aside:
+            axes.plot([], [], "-", color=colours.text, lw=0.6, label="robot, tool down")
         if len(plan.path.cusps) or (plan.path.gear < 0).any():
             axes.plot([], [], "-D", color=colours.back, lw=1.3, ms=3, label="backwards, gear changes")
     if places:

@@ -144,6 +144,13 @@ def _caps(
             caps.append(_below(rim, (1 + side * first) ** 2, (1 + side * middle) ** 2, (1 + side * last) ** 2))
         if math.isfinite(mobility.lateral_acceleration):
             caps.append(_below(mobility.lateral_acceleration, np.abs(first), np.abs(middle), np.abs(last)))
+        place = robot.offset
+        if place.aside:  # the work speed is that of the tool, beside the robot's middle
+            down = path.tool[piece] != RAISED
+            right, ahead = down * path.gear[piece] * place.right, down * place.ahead
+            ratios = [(1 + right * bend) ** 2 + (ahead * bend) ** 2 for bend in (first, middle, last)]
+            caps.append(_below(np.where(down, work, transit) ** 2, *ratios))
+            common = np.where(moving, np.inf, 0.0)
         with np.errstate(divide="ignore"):
             steer = mobility.acceleration / (np.abs(sharpness) * half)
         # a wheel that hardly moves is not told of the robot's acceleration, which is at most this share of the limit
@@ -156,13 +163,15 @@ def _caps(
     return np.column_stack([begin, end]), np.where(sharpness == 0, np.minimum(begin, end), np.inf)
 
 
-def _below(limit: float, first: FloatArray, middle: FloatArray, last: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _below(
+    limit: float | FloatArray, first: FloatArray, middle: FloatArray, last: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """b (n,) at both ends so that b q <= limit all along, for convex q (n,) at the ends and in the middle."""
     most = np.maximum(first, last)
     with np.errstate(divide="ignore", invalid="ignore"):
         double, scale, least = 2.0 * middle, limit / middle**2, limit / most
-    smooth = most < FLAT * middle
-    return np.where(smooth, scale * (double - first), least), np.where(smooth, scale * (double - last), least)
+        smooth = most < FLAT * middle
+        return np.where(smooth, scale * (double - first), least), np.where(smooth, scale * (double - last), least)
 
 
 def _joint_speeds(path: Path, robot: Robot) -> FloatArray:

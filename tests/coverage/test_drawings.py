@@ -16,7 +16,8 @@ import optplan as op
 from optplan.coverage import cover
 from optplan.coverage import drawing as module
 from optplan.coverage.placing import canvas_of, placed, placement
-from optplan.coverage.stops import curves_of, split_at_stops, stops_of
+from optplan.coverage.splitting import split_at_stops
+from optplan.coverage.stops import curves_of, stops_of
 from optplan.domain.errors import InputError, LimitError
 from optplan.domain.job import Curve, Drawing, Element, FillRule, FillSettings, Surface
 from optplan.domain.options import CoverOptions, Options, PageOptions

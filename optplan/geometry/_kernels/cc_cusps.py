@@ -146,7 +146,8 @@ def solve(
     else:
         best = _with_cusps(end, start, kappa, s, table, turns, with_cusps, segments, work, choice)
         choice[0, 2] = 1.0
-    best *= (1.0 + SAVED) / kappa
+    shortest = best / kappa
+    best = shortest * (1.0 + SAVED)
     way = CUSPS
     radius = 1.0 / kappa
     if dubins_length(start[0], start[1], start[2], end[0], end[1], end[2], radius) < best:
@@ -159,7 +160,7 @@ def solve(
         length = solve_forwards(turned[0], turned[1], kappa, s, True, table, middles, turns, words, query)
         if length < best:
             best, way = length, BACKWARDS
-    return best, way
+    return shortest if way == CUSPS else best, way
 
 
 @njit(
