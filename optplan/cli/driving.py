@@ -34,7 +34,6 @@ def drive_options(flags: dict[str, Any]) -> DriveOptions:
         heading_noise=si("heading_noise", angle) or 0.0,
         seed=flags["seed"] or 0,
         lookahead=si("lookahead", length),
-        beside=flags["beside"],
         ideal=flags["ideal"],
     )
 
@@ -55,11 +54,10 @@ def unwanted(flags: dict[str, Any]) -> None:
     asked = [name for name in ("frames", "simulated", "duration", "speed_up", "fps", "size") if flags[name]]
     if asked and not flags["animate"]:
         raise InputError("is about a film; say --animate, too", f"--{asked[0].replace('_', '-')}")
-    drive = [name for name in ("ideal", "lag", "slip", "noise", "seed", "beside") if flags[name]]
+    drive = [name for name in ("ideal", "lag", "slip", "noise", "seed") if flags[name]]
     drive += ["tracker"] if flags["tracker"] != "path-frame" else []
     if drive and not flags["simulated"]:
-        flag = "tool-beside" if drive[0] == "beside" else drive[0]
-        raise InputError("is about a simulated drive; say --simulated, too", f"--{flag}")
+        raise InputError("is about a simulated drive; say --simulated, too", f"--{drive[0].replace('_', '-')}")
 
 
 def film(plan: Plan, file: Path, out: Path | None, flags: dict[str, Any], force: bool, quiet: bool) -> Path:

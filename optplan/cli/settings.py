@@ -88,9 +88,6 @@ Slip = Annotated[float | None, typer.Option(help="Standard deviation of each whe
 Noise = Annotated[str | None, typer.Option(help="Standard deviation of the measured place, e.g. 1cm.")]
 HeadingNoise = Annotated[str | None, typer.Option(help="Standard deviation of the measured heading, degrees.")]
 Lookahead = Annotated[str | None, typer.Option(help="Of pure pursuit, e.g. 50cm.")]
-Beside = Annotated[
-    bool, typer.Option("--tool-beside/--tool-on-path", help="Whether the tool sits beside the point on the path.")
-]
 
 Animate = Annotated[bool, typer.Option("--animate", help="A film of the robot driving the plan.")]
 Frames = Annotated[bool, typer.Option("--frames", help="The film as a folder of PNG files, or with -o x.json as JSON.")]

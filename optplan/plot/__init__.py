@@ -92,8 +92,7 @@ def animate(
     overwrite : whether existing files may be replaced
     progress : called with the share of frames that are drawn
 
-    A robot that would be smaller than 20 pixels is drawn that large. The middle of the robot follows the path, and with
-    it the tool, except in a drive whose tool sits beside it.
+    A robot that would be smaller than 20 pixels is drawn that large.
 
     Raises
     ------

@@ -59,7 +59,7 @@ def simulate(
     if not isinstance(plan.robot.mobility, DiffDrive):
         from optplan.simulation.follower import follow
 
-        return follow(plan.robot, trajectory, asked)
+        return follow(plan.robot, trajectory)
     from optplan.simulation.driving import drive_wheels
 
     return drive_wheels(plan.robot, plan.robot.mobility, trajectory, asked, progress or silent, stop)

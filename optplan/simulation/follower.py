@@ -10,18 +10,17 @@ from optplan.domain.drive import Drive
 from optplan.domain.path import Trajectory
 from optplan.domain.robot import Robot
 from optplan.simulation.figures import figures_of
-from optplan.simulation.options import DriveOptions
 from optplan.timing.motion import motion
 
 STEP = 0.01
 """Time between two moments, s."""
 
 
-def follow(robot: Robot, trajectory: Trajectory, options: DriveOptions) -> Drive:
+def follow(robot: Robot, trajectory: Trajectory) -> Drive:
     """The planned motion as a drive without wheels and without errors. Heights are left out."""
     duration = trajectory.duration
     time = np.linspace(0.0, duration, max(2, math.ceil(duration / STEP) + 1))
-    moved = motion(trajectory, robot, time, options.beside)
+    moved = motion(trajectory, robot, time)
     none = np.zeros(len(time))
     wheels = np.zeros((len(time), 2))
     return Drive(

@@ -32,8 +32,6 @@ class DriveOptions:
     lookahead : of pure pursuit, m; None: the wheels' distance or 0.5 s ahead, whichever is more
     lost : the robot gives up this far from its path, m; None: four times the wheels' distance
     start : x, y (m) and heading (rad) where it stands at first; None: at the beginning of the path
-    beside : whether the tool sits beside the point that follows the path, where the robot's preset puts it. Plans of
-        drawings are the path of the tool, so the default takes it to sit at that point.
     ideal : no lag, no slip, no noise, and it begins on the path
 
     Raises
@@ -53,7 +51,6 @@ class DriveOptions:
     lookahead: float | None = None
     lost: float | None = None
     start: tuple[float, float, float] | None = None
-    beside: bool = False
     ideal: bool = False
 
     def __post_init__(self) -> None:

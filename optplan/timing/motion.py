@@ -48,14 +48,13 @@ def stations(trajectory: Trajectory) -> Stations:
     return Stations(gear, knot, begin, begin + turned)
 
 
-def motion(trajectory: Trajectory, robot: Robot, time: FloatArray, beside: bool = False) -> Motion:
+def motion(trajectory: Trajectory, robot: Robot, time: FloatArray) -> Motion:
     """Where the robot is at these moments.
 
     Parameters
     ----------
     trajectory : with one piece or more
     time : (n,) s from the beginning, increasing; beyond the end it stands there
-    beside : whether the tool sits beside the point that follows the path, as in the robot's preset, or at it
 
     A turn on the spot follows a trapezoid of the robot's turn rate, dwelling comes after it.
     """
@@ -74,7 +73,7 @@ def motion(trajectory: Trajectory, robot: Robot, time: FloatArray, beside: bool 
     angle, turning = _turning(path, piece, t - trajectory.t[at.knot[piece]], robot)
     heading = states.heading + np.where(at.gear[piece] < 0, math.pi, 0.0) + angle
     x, y = states.position[:, 0], states.position[:, 1]
-    right, ahead = (robot.tool.right, robot.tool.ahead) if beside else (0.0, 0.0)
+    right, ahead = robot.offset
     tool_x = x + ahead * np.cos(heading) + right * np.sin(heading)
     tool_y = y + ahead * np.sin(heading) - right * np.cos(heading)
     turn_rate = speed * states.curvature + turning

@@ -122,7 +122,7 @@ def test_a_tool_beside_the_robot() -> None:
     plan = plan_of(BEND)
     robot = replace(plan.robot, tool=replace(plan.robot.tool, right=0.3, ahead=0.1))
     assert plan.trajectory is not None
-    moved = motion(plan.trajectory, robot, np.linspace(0, 5, 50), beside=True)
+    moved = motion(plan.trajectory, robot, np.linspace(0, 5, 50))
     c, s = np.cos(moved.heading), np.sin(moved.heading)
     dx, dy = moved.tool_x - moved.x, moved.tool_y - moved.y
     assert dx * c + dy * s == pytest.approx(0.1)

@@ -134,7 +134,6 @@ def test_frames(run: Runner) -> None:
         (("--fps", "5"), "--fps: is about a film; say --animate, too"),
         (("--frames",), "--frames: is about a film"),
         (("--animate", "--lag", "1s"), "--lag: is about a simulated drive; say --simulated, too"),
-        (("--animate", "--tool-beside"), "--tool-beside: is about a simulated drive"),
         (("--animate", "--convergence"), "expected one of --animate and --convergence"),
         (("--animate", "--frames", "-o", "x.gif"), "x.gif: is no place for frames"),
         (("--animate", "-o", "x.png"), "x.png: has the ending '.png'"),

@@ -103,7 +103,7 @@ def test_a_tool_on_the_right_goes_further_in_a_bend_to_the_left() -> None:
     robot = rake()
     robot = replace(robot, tool=replace(robot.tool, right=0.3))
     arc = path_of([(math.pi, 0.5, 0.0, 0.0)])
-    drive = op.simulate(plan_of(arc, robot), op.DriveOptions(ideal=True, beside=True))
+    drive = op.simulate(plan_of(arc, robot), op.DriveOptions(ideal=True))
     tool = np.hypot(np.diff(drive.tool_x), np.diff(drive.tool_y)).sum()
     middle = np.hypot(np.diff(drive.x), np.diff(drive.y)).sum()
     assert tool / middle == pytest.approx(1 + 0.5 * 0.3, abs=2e-3)
@@ -164,7 +164,7 @@ def test_a_tool_beside_a_robot_that_backs() -> None:
     robot = rake()
     robot = replace(robot, tool=replace(robot.tool, right=0.3, ahead=0.1))
     back = replace(path_of([(3, 0.4, 0, 0)]), gear=np.array([-1]))
-    drive = op.simulate(plan_of(back, robot), op.DriveOptions(ideal=True, beside=True))
+    drive = op.simulate(plan_of(back, robot), op.DriveOptions(ideal=True))
     assert drive.finished
     # travelling along +x with its front towards -x, its right is +y
     assert (drive.tool_x[0], drive.tool_y[0]) == pytest.approx((-0.1, 0.3))
