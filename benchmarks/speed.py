@@ -6,6 +6,7 @@ import statistics
 import sys
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -82,10 +83,21 @@ def judging() -> Iterator[Row]:
     yield Row("a plan judged", used(lambda: verify(made), 3), 2.0, "s", f"{metres:.0f} m")
 
 
+def trailing() -> Iterator[Row]:
+    """A rake 0.3 m behind the robot on a drawing of a dozen strokes: how far it is from its lines, by the judge."""
+    robot = load_robot("beach-rake")
+    towing = replace(robot, tool=replace(robot.tool, ahead=-0.3))
+    made = plan(read(instance("lion")), towing, Options(order=OrderOptions(seconds=3.0)))
+    assert made.report is not None
+    off = next(check.value for check in made.report.checks if check.name == "deviation")
+    verified = "verified" if made.report.ok else "NOT VERIFIED"
+    yield Row("rake 0.3 m behind, greatest deviation", 1000 * off, 5.0, "mm", f"on all of the length; {verified}")
+
+
 def main() -> int:
     """Print the table; 0 when every target is met."""
     met = True
-    for part in (profiles(), judging()):
+    for part in (profiles(), judging(), trailing()):
         for row in part:
             good = row.measured <= row.target
             met = met and good
