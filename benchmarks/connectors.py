@@ -6,15 +6,17 @@ The lists are looked for in `../shared/data/connectors` beside the project; with
 from __future__ import annotations
 
 import csv
+import itertools
 import statistics
 import sys
 import time
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
-from benchmarks.ordering import DATA, Row
+from benchmarks.ordering import DATA
+from benchmarks.table import Row, print_rows, used
 from optplan.domain.arrays import FloatArray
 from optplan.geometry.cc import Family, cc_lengths, cc_matrix, cc_path
 from optplan.geometry.curves import Curve
@@ -31,16 +33,6 @@ def queries(count: int, seed: int) -> FloatArray:
     """Random rows x, y, heading, curvature 0 in a box of 10 m."""
     random = np.random.default_rng(seed)
     return np.column_stack([random.uniform(0, 10, (count, 2)), random.uniform(-np.pi, np.pi, count), np.zeros(count)])
-
-
-def used(work: Callable[[], object], times: int = 5) -> float:
-    """Processor seconds, the median of several runs."""
-    seconds = []
-    for _ in range(times):
-        start = time.process_time()
-        work()
-        seconds.append(time.process_time() - start)
-    return statistics.median(seconds)
 
 
 def speeds(count: int = 100_000) -> Iterator[Row]:
@@ -183,17 +175,8 @@ def ends(count: int = 3000) -> Iterator[Row]:
 
 def main() -> int:
     """Print the table; 0 when every target is met."""
-    met = True
-    for part in (lengths(), ends(), speeds(), reversing(), matrices(), optimised()):
-        for row in part:
-            good = row.measured <= row.target
-            met = met and good
-            verdict = "met" if good else "NOT MET"
-            print(
-                f"{row.what:<52}{row.measured:>11.4g} {row.unit:<3}{row.target:>9.3g}  {verdict}  {row.remark}",
-                flush=True,
-            )
-    return 0 if met else 1
+    parts = (lengths(), ends(), speeds(), reversing(), matrices(), optimised())
+    return 0 if print_rows(itertools.chain(*parts)) else 1
 
 
 if __name__ == "__main__":

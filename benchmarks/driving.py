@@ -13,16 +13,14 @@ drives, or of smoothed speeds. What can be compared is how much less it becomes.
 from __future__ import annotations
 
 import math
-import statistics
 import sys
-import time
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 import optplan as op
-from benchmarks.ordering import Row
+from benchmarks.table import Row, print_rows, used
 from optplan.domain.arrays import FloatArray
 from optplan.domain.path import Path, Trajectory
 from optplan.domain.result import Plan
@@ -74,13 +72,9 @@ def speeds() -> Iterator[Row]:
     op.simulate(plan)  # so that compiling is not counted
     for tracker in ("path-frame", "pure-pursuit"):
         options = op.DriveOptions(tracker=tracker, slip=0.02, noise=0.01)
-        seconds = []
-        for _ in range(3):
-            start = time.process_time()
-            drive = op.simulate(plan, options)
-            seconds.append(time.process_time() - start)
+        seconds, drive = used(lambda: op.simulate(plan, options), 3), op.simulate(plan, options)  # noqa: B023
         remark = f"{len(drive)} steps, {drive.reason}"
-        yield Row(f"simulate 1000 m at 1 m/s, {tracker}", statistics.median(seconds), 5.0, "s", remark)
+        yield Row(f"simulate 1000 m at 1 m/s, {tracker}", seconds, 5.0, "s", remark)
 
 
 class Corner(NamedTuple):
@@ -156,14 +150,7 @@ def print_corners() -> None:
 
 def main() -> int:
     """Print the figures; 0 when every target is met."""
-    good = True
-    for row in speeds():
-        met = row.measured <= row.target
-        good &= met
-        print(
-            f"{row.what:<52}{row.measured:>9.2f} {row.unit:<3}{row.target:>9.2f} {row.unit:<3}  "
-            f"{'met' if met else 'NOT MET'}  {row.remark}"
-        )
+    good = print_rows(speeds())
     print_corners()
     return 0 if good else 1
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from benchmarks.drawings import drawing
 from benchmarks.peers import PEERS, available, peer_cost
+from benchmarks.table import Row
 from optplan.compare import Case, load_case
 from optplan.compare.runs import verified
 from optplan.domain.ordering import OrderingProblem
@@ -24,16 +25,6 @@ from optplan.ordering import solve
 from optplan.ordering.cutting.undirected import undirected_form
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
-
-
-class Row(NamedTuple):
-    """A figure: what, measured, target, unit, and a remark."""
-
-    what: str
-    measured: float
-    target: float
-    unit: str
-    remark: str = ""
 
 
 class Class(NamedTuple):

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import statistics
+import itertools
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.ordering import Row
+from benchmarks.driving import chain
+from benchmarks.table import Row, print_rows, used
 from optplan.domain.options import Options, OrderOptions, PageOptions
 from optplan.domain.path import Path
-from optplan.geometry.clothoids import clothoid_displacement
 from optplan.instances import instance
 from optplan.jobs.reading import read
 from optplan.judge import verify
@@ -23,28 +22,13 @@ from optplan.timing.fastest import greatest, profile
 from optplan.timing.grid import grid_of
 
 
-def used(work: Callable[[], object], times: int = 5) -> float:
-    """Processor seconds, the median of several runs."""
-    seconds = []
-    for _ in range(times):
-        start = time.process_time()
-        work()
-        seconds.append(time.process_time() - start)
-    return statistics.median(seconds)
-
-
 def clothoids(count: int, seed: int) -> Path:
     """A path of random clothoids of 0.5 to 2 m, up to 1.5 1/m, straight at both ends, with the tool down."""
     random = np.random.default_rng(seed)
     lengths = random.uniform(0.5, 2.0, count)
     curvatures = np.concatenate([[0.0], random.uniform(-1.5, 1.5, count - 1), [0.0]])
     rate = np.diff(curvatures) / lengths
-    heading = np.concatenate([[0.0], np.cumsum(lengths * (curvatures[:-1] + curvatures[1:]) / 2)])[:-1]
-    steps = clothoid_displacement(heading, curvatures[:-1], rate, lengths)
-    start = np.zeros((count, 3))
-    start[1:, :2] = np.cumsum(np.column_stack(steps), axis=0)[:-1]
-    zero, tool = np.zeros(count), np.ones(count, dtype=np.int64)
-    return Path(start, heading, zero, curvatures[:-1], rate, lengths, zero, zero, tool, np.arange(count))
+    return chain(curvatures[:-1].tolist(), rate.tolist(), lengths.tolist())
 
 
 def profiles() -> Iterator[Row]:
@@ -96,17 +80,7 @@ def trailing() -> Iterator[Row]:
 
 def main() -> int:
     """Print the table; 0 when every target is met."""
-    met = True
-    for part in (profiles(), judging(), trailing()):
-        for row in part:
-            good = row.measured <= row.target
-            met = met and good
-            verdict = "met" if good else "NOT MET"
-            print(
-                f"{row.what:<52}{row.measured:>11.4g} {row.unit:<3}{row.target:>9.3g}  {verdict}  {row.remark}",
-                flush=True,
-            )
-    return 0 if met else 1
+    return 0 if print_rows(itertools.chain(profiles(), judging(), trailing())) else 1
 
 
 if __name__ == "__main__":

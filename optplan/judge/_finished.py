@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from optplan.domain.arrays import IntArray
 from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check
 from optplan.domain.result import Cover
@@ -26,12 +27,8 @@ def over_finished(path: Path, samples: Samples, cover: Cover, robot: Robot) -> C
 
     strokes = cover.strokes
     widths = np.array([setting.width for setting in robot.tool.settings])
-    last = np.full(len(strokes), len(path))
-    driven = np.flatnonzero((path.stroke >= 0) & (path.stroke < len(strokes)))
-    last[path.stroke[driven]] = driven  # later rows overwrite earlier ones
-    marked = [k for k, stroke in enumerate(strokes) if RAISED < stroke.tool < len(widths) and last[k] < len(path)]
-    marks = np.array([mark(shapely, strokes[k].closed_points, widths[strokes[k].tool]) for k in marked], dtype=object)
-    tree, made = shapely.STRtree(marks), last[np.array(marked, dtype=np.int64)]
+    marks, made = finished_marks(path, cover, robot)
+    tree = shapely.STRtree(marks)
 
     total, worst, place, times = 0.0, 0.0, None, 0
     for first, end in _carried(path):
@@ -52,6 +49,20 @@ def over_finished(path: Path, samples: Samples, cover: Cover, robot: Robot) -> C
     return noted(NAME, total, "m", f"The tool is carried over finished work on {count_of(times, 'way')}.", place)
 
 
+def finished_marks(path: Path, cover: Cover, robot: Robot) -> tuple[Any, IntArray]:
+    """The marks (k,) of the strokes that are driven, as areas, and the last row (k,) of the path that makes each."""
+    import shapely
+
+    strokes = cover.strokes
+    widths = np.array([setting.width for setting in robot.tool.settings])
+    last = np.full(len(strokes), len(path))
+    driven = np.flatnonzero((path.stroke >= 0) & (path.stroke < len(strokes)))
+    last[path.stroke[driven]] = driven  # later rows overwrite earlier ones
+    marked = [k for k, stroke in enumerate(strokes) if RAISED < stroke.tool < len(widths) and last[k] < len(path)]
+    marks = [_mark(shapely, strokes[k].closed_points, widths[strokes[k].tool]) for k in marked]
+    return np.array(marks, dtype=object), last[np.array(marked, dtype=np.int64)]
+
+
 def _carried(path: Path) -> list[tuple[int, int]]:
     """Rows first..end - 1 of each stretch with the tool up that moves; turns within it belong to it."""
     up = np.concatenate([[False], (path.tool == RAISED), [False]])
@@ -59,7 +70,7 @@ def _carried(path: Path) -> list[tuple[int, int]]:
     return [(first, end) for first, end in edges.tolist() if path.length[first:end].any()]
 
 
-def mark(shapely: Any, points: Any, width: float) -> Any:
+def _mark(shapely: Any, points: Any, width: float) -> Any:
     line = shapely.points(points[0, :2]) if len(points) == 1 else shapely.linestrings(points[:, :2])
     return shapely.buffer(line, width / 2)
 

@@ -6,12 +6,12 @@ import numpy as np
 
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.options import Options
-from optplan.domain.path import RAISED, Path, Trajectory
+from optplan.domain.path import Path, Trajectory
 from optplan.domain.report import Check
 from optplan.domain.result import Cover
 from optplan.domain.robot import DiffDrive, Robot
 from optplan.judge._findings import Place, count_of, noted
-from optplan.judge._finished import mark, middle
+from optplan.judge._finished import finished_marks, middle
 from optplan.judge._integrate import Samples
 
 NAME = "wheels over finished work"
@@ -31,14 +31,8 @@ def wheels_over_finished(
     mobility = robot.mobility
     if not isinstance(mobility, DiffDrive):
         return noted(NAME, 0.0, "m", "The robot has no wheels.")
-    strokes = cover.strokes
-    widths = np.array([setting.width for setting in robot.tool.settings])
-    last = np.full(len(strokes), len(path))
-    driven = np.flatnonzero((path.stroke >= 0) & (path.stroke < len(strokes)))
-    last[path.stroke[driven]] = driven
-    marked = [k for k, stroke in enumerate(strokes) if RAISED < stroke.tool < len(widths) and last[k] < len(path)]
-    marks = np.array([mark(shapely, strokes[k].closed_points, widths[strokes[k].tool]) for k in marked], dtype=object)
-    tree, made = shapely.STRtree(marks), last[np.array(marked, dtype=np.int64)]
+    marks, made = finished_marks(path, cover, robot)
+    tree = shapely.STRtree(marks)
     # without speeds nothing is known to be dry
     dry = options.order.drying if trajectory is not None else None
     times = np.zeros(len(path) + 1) if trajectory is None else np.interp(path.offsets, trajectory.s, trajectory.t)
