@@ -57,8 +57,9 @@ def avoid_finished(
     if problem.nodes > DENSE_NODES:
         more = f"finished work is not avoided: {problem.nodes} ways of driving, at most {DENSE_NODES}"
         return replace(found, message=f"{found.message}; {more}")
-    weight, count = options.order.avoid, problem.clusters
-    family = family_of(robot, options)
+    family, count = family_of(robot, options), problem.clusters
+    # a metre is worth what it takes to drive it
+    weight = options.order.avoid / (family.pace.numbers[2] if family.pace is not None else 1.0)
     marks, stroke = Marks(cover.strokes, robot), problem.cluster
     costs = dense_costs(problem)
     extra = np.zeros_like(costs)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from optplan.connectors.around import Roads, roads_of
-from optplan.connectors.families import family_of, start_states
+from optplan.connectors.families import Family, family_of, start_states
 from optplan.domain.options import Options
 from optplan.domain.ordering import MatrixCosts, Ordering, OrderingProblem, Status
 from optplan.domain.progress import Progress, ProgressCallback
@@ -33,7 +33,7 @@ def with_detours(
     clock: RunningStop,
     progress: ProgressCallback,
 ) -> tuple[Ordering, OrderingProblem]:
-    """An order whose costs are the lengths of the ways around forbidden areas, and the problem with these costs.
+    """An order whose costs are those of the ways around forbidden areas, and the problem with these costs.
 
     The connectors that an order uses are measured with their ways around; the problem is solved again with these costs,
     until an order uses measured connectors only, or the limits are reached. A connector that heeds nothing is never
@@ -78,7 +78,7 @@ def with_detours(
                 before = float(begin[head])
             else:
                 here, before = exits[tail, [0, 1, 3, 4]], float(costs[tail, head])
-            length = _length(roads, here, entries[head, [0, 1, 3, 4]])
+            length = _cost(roads, family, here, entries[head, [0, 1, 3, 4]])
             if length > before * (1 + 1e-9):
                 changed, longer, blocked = True, longer + 1, blocked + math.isinf(length)
                 if tail < 0:
@@ -112,7 +112,11 @@ def with_detours(
     return replace(current, nodes=best, cost=least, bound=bound, status=Status.FEASIBLE, message=message), problem
 
 
-def _length(roads: Roads, here: np.ndarray, there: np.ndarray) -> float:
-    """m; 0 between the same places, infinite when there is no way."""
+def _cost(roads: Roads, family: Family, here: np.ndarray, there: np.ndarray) -> float:
+    """m or s; 0 between the same places, infinite when there is no way."""
     way = roads.between(here, there)
-    return 0.0 if way.source == "the ends are the same" else way.length
+    if way.source == "the ends are the same":
+        return 0.0
+    if family.pace is not None and way.curves:
+        return family.pace.time_along(way.curves)
+    return way.length

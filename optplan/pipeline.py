@@ -9,10 +9,12 @@ from pathlib import Path
 
 from optplan.avoiding import avoid_finished
 from optplan.connectors.driving import connect
+from optplan.connectors.families import family_of
 from optplan.coverage import cover
+from optplan.coverage.field import with_areas
 from optplan.detours import with_detours
 from optplan.domain.errors import InputError
-from optplan.domain.job import Job
+from optplan.domain.job import Field, Job
 from optplan.domain.options import Options
 from optplan.domain.progress import Progress, ProgressCallback, silent
 from optplan.domain.result import Plan
@@ -97,8 +99,11 @@ def run_stage(
 
 
 def _cover(before: Plan, progress: ProgressCallback, _: StopRule | None) -> Plan:
-    made = cover(before.job, before.robot, before.options, progress)
-    return Plan(before.job, before.robot, before.options, made)
+    options = before.options
+    if isinstance(before.job, Field):
+        options = with_areas(before.job, before.robot, options)
+    made = cover(before.job, before.robot, options, progress)
+    return Plan(before.job, before.robot, options, made)
 
 
 def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> Plan:
@@ -116,6 +121,7 @@ def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> P
     ordering, problem = with_detours(ordering, problem, ways, before.cover, robot, options, clock, progress)
     if order.avoid > 0 and problem.clusters > 1 and math.isfinite(ordering.cost):
         ordering = avoid_finished(ordering, problem, ways, before.cover, robot, options, clock, progress)
+    ordering = replace(ordering, unit=family_of(robot, options).unit)
     visits = ways.take(ordering.nodes) if math.isfinite(ordering.cost) else None
     return Plan(job, robot, options, before.cover, ordering, visits)
 

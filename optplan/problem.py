@@ -23,6 +23,8 @@ DUBINS_ENTRIES = 16
 MOST_CURVED = 3000
 """Ways of driving under continuous curvature or with reversing: all connectors between them are computed, which takes
 100 s at 10 us."""
+MOST_TIMED = 1200
+"""The same where each is computed for several speeds."""
 
 
 def traversals(
@@ -71,6 +73,9 @@ def _ways(
     offers: list[tuple[IntArray, bool]]
     if stroke.is_stop:
         offers = [(np.array([0]), False)]
+    elif stroke.headings > 1:
+        # a line driven backwards is the same line half a turn further on
+        offers = [(np.arange(stroke.headings), False)]
     elif stroke.closed:
         choice = np.arange(count) if stroke.entry is None else np.array([stroke.entry])
         if most is not None and len(choice) > most:
@@ -146,14 +151,14 @@ def ordering_problem(
     options: Options | None = None,
     progress: ProgressCallback = silent,
 ) -> OrderingProblem:
-    """The problem of visiting every stroke once: nodes are the rows of `ways`, costs are metres between strokes.
+    """The problem of visiting every stroke once: nodes are the rows of `ways`, costs what lies between strokes, m or s.
 
     Parameters
     ----------
     ways : traversals of the strokes of `cover`
     cover : gives precedence and, unless the options name one, the start point
-    robot, options : give the metric: straight lines, or Dubins or continuous-curvature paths within the limits at
-        transit speed
+    robot, options : give the metric: straight lines, Dubins or continuous-curvature paths within the limits at transit
+        speed, or the time that continuous-curvature paths take, each at the speed that suits it
     progress : told how many connectors have been measured, where that takes time
 
     Raises
@@ -164,11 +169,12 @@ def ordering_problem(
     family = family_of(robot, options)
     start = _start(cover, options)
     costs: ArcCosts
-    if family.metric == "cc" or family.reversing:
-        if len(ways) > MOST_CURVED:
+    if family.curved or family.reversing:
+        most = MOST_TIMED if family.pace is not None else MOST_CURVED
+        if len(ways) > most:
             what = f"the metric {family.metric!r}{' with reversing' if family.reversing else ''}"
             raise LimitError(
-                f"{len(ways)} ways of driving the strokes; {what} takes at most {MOST_CURVED}: "
+                f"{len(ways)} ways of driving the strokes; {what} takes at most {most}: "
                 "offer fewer entries, or take 'dubins' without reversing"
             )
 

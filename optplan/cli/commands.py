@@ -21,6 +21,7 @@ from optplan.cli.settings import (
     ConfigFile,
     ConstantSpeed,
     Corner,
+    Cut,
     Direction,
     Drying,
     ElementFill,
@@ -36,6 +37,7 @@ from optplan.cli.settings import (
     Inset,
     Iterations,
     JerkLimit,
+    Keep,
     Lag,
     Links,
     Lookahead,
@@ -54,6 +56,7 @@ from optplan.cli.settings import (
     SolverName,
     Spacing,
     SpeedUp,
+    SpotHeadings,
     Start,
     TimeLimit,
     Tolerance,
@@ -117,7 +120,10 @@ def _main(
 @app.command("plan")
 def plan_command(
     job: Annotated[
-        Path, typer.Argument(help="A drawing (.svg), a JSON job, or the name of a shipped one.", show_default=False)
+        Path,
+        typer.Argument(
+            help="A drawing (.svg), a field or another JSON job, or the name of a shipped one.", show_default=False
+        ),
     ],
     robot: RobotName = None,
     out: Annotated[Path | None, typer.Option("--output", "-o", help="Folder; default: <job>-plan.")] = None,
@@ -141,6 +147,9 @@ def plan_command(
     entry: EntryVertex = None,
     inner_first: InnerFirst = None,
     link: Links = None,
+    cut: Cut = None,
+    headings: SpotHeadings = None,
+    keep: Keep = None,
     solver: SolverName = None,
     metric: Metric = None,
     time_limit: TimeLimit = None,
@@ -343,7 +352,7 @@ def _load(file: Path, flags: dict[str, Any]) -> Plan:
 
 @app.command()
 def cover(
-    file: Annotated[Path, typer.Argument(help="A plan, or a drawing to begin with.", show_default=False)],
+    file: Annotated[Path, typer.Argument(help="A plan, or a job to begin with.", show_default=False)],
     out: OutFile = None,
     robot: RobotName = None,
     rest: Rest = False,
@@ -361,6 +370,9 @@ def cover(
     entry: EntryVertex = None,
     inner_first: InnerFirst = None,
     link: Links = None,
+    cut: Cut = None,
+    headings: SpotHeadings = None,
+    keep: Keep = None,
 ) -> None:
     """Cover: from the job to strokes."""
     _stage("cover", file, out, dict(locals()), rest, force, quiet, json)

@@ -144,8 +144,8 @@ def print_notes(plan: Plan) -> None:
 def print_order(ordering: Ordering) -> None:
     """The solver's answer in one or two lines."""
     gap = "no bound" if math.isinf(ordering.gap) else f"gap {100 * ordering.gap:.2f} %"
-    bound = f", bound {ordering.bound:.3f} m" if math.isfinite(ordering.bound) else ""
-    cost = f"{ordering.cost:.3f} m between strokes" if math.isfinite(ordering.cost) else "nothing found"
+    bound = f", bound {ordering.bound:.3f} {ordering.unit}" if math.isfinite(ordering.bound) else ""
+    cost = f"{ordering.cost:.3f} {ordering.unit} between strokes" if math.isfinite(ordering.cost) else "nothing found"
     print(f"order: {ordering.status.value} by {ordering.solver}: {cost}{bound}, {gap}; {ordering.stopped.value}")
     if ordering.message:
         print(f"       {ordering.message}")

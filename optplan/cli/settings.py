@@ -44,11 +44,16 @@ Links = Annotated[
     list[str] | None,
     typer.Option("--link", help="Join two strokes at drawn vertices: 'ID:0,ID:-1' (-1: the last). Repeatable."),
 ]
+Cut = Annotated[
+    bool | None, typer.Option("--cut/--whole", help="Lines of a field may be left where others meet them, or not.")
+]
+SpotHeadings = Annotated[int | None, typer.Option("--headings", help="Directions in which a spot may be driven.")]
+Keep = Annotated[str | None, typer.Option(help="Of the job: nothing, order, or all (order and directions).")]
 EntryVertex = Annotated[
     list[str] | None, typer.Option("--entry", help="Enter an element at a drawn vertex: 'ID:3'. Repeatable.")
 ]
 SolverName = Annotated[str | None, typer.Option("--solver", "-s", help="See: optplan solvers.")]
-Metric = Annotated[str | None, typer.Option(help="euclid, dubins, cc or auto.")]
+Metric = Annotated[str | None, typer.Option(help="euclid, dubins, cc, time or auto.")]
 TimeLimit = Annotated[str | None, typer.Option(help="For ordering, e.g. 10s or 2min.")]
 Iterations = Annotated[int | None, typer.Option(help="Limit of ordering; with a seed repeatable.")]
 Seed = Annotated[int | None, typer.Option(help="Of everything random.")]
@@ -105,6 +110,9 @@ _PLACES = {
     "inset": ("cover", "inset"),
     "boundary": ("cover", "boundary"),
     "inner_first": ("cover", "inner_first"),
+    "cut": ("cover", "cut"),
+    "headings": ("cover", "headings"),
+    "keep": ("order", "keep"),
     "solver": ("order", "solver"),
     "metric": ("order", "metric"),
     "time_limit": ("order", "seconds"),

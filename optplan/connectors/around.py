@@ -10,6 +10,7 @@ from __future__ import annotations
 import heapq
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -17,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from optplan.connectors.families import family_of
+from optplan.connectors.pace import Pace
 from optplan.connectors.surroundings import ROUND, Surroundings, surroundings_of
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
@@ -42,7 +44,7 @@ class Way(NamedTuple):
     curves: tuple[Curve, ...]
     """in driving order: one of continuous curvature, or lines between which the robot turns; none: there is no way"""
     source: str
-    """ "direct", "road map" or "shortened"; without a curve, what is the matter"""
+    """ "direct", "another speed", "road map" or "shortened"; without a curve, what is the matter"""
 
     @property
     def length(self) -> float:
@@ -144,11 +146,13 @@ class StraightRoads(Roads):
 
 
 class CurvedRoads(Roads):
-    """Connectors of continuous curvature under limits (1/m, 1/m^2)."""
+    """Connectors of continuous curvature under limits (1/m, 1/m^2); the direct ones as fast as a pace allows."""
 
-    def __init__(self, surroundings: Surroundings, curvature: float, sharpness: float) -> None:
+    def __init__(
+        self, surroundings: Surroundings, curvature: float, sharpness: float, pace: Pace | None = None
+    ) -> None:
         super().__init__(surroundings)
-        self.curvature, self.sharpness, self.sag = curvature, sharpness, SAG / curvature
+        self.curvature, self.sharpness, self.sag, self.pace = curvature, sharpness, SAG / curvature, pace
 
     @cached_property
     def states(self) -> FloatArray:
@@ -187,16 +191,26 @@ class CurvedRoads(Roads):
         made = cc_path(start, end, self.curvature, self.sharpness)
         return Curve(start[:3], made.curvatures, made.sharpnesses, made.lengths) if made.length > 0 else None
 
+    def _direct(self, start: FloatArray, end: FloatArray) -> Iterator[Curve | None]:
+        """Connectors that heed nothing: the shortest, or with a pace those of its speeds, the fastest first."""
+        if self.pace is None:
+            yield self.connector(start, end)
+            return
+        times = self.pace.by_rung(start[None], end[None])[:, 0]
+        for rung in np.argsort(times, kind="stable")[: int(np.isfinite(times).sum())].tolist():
+            made = cc_path(start, end, *self.pace.rungs[rung])
+            yield Curve(start[:3], made.curvatures, made.sharpnesses, made.lengths) if made.length > 0 else None
+
     def clear(self, start: FloatArray, end: FloatArray) -> bool:
         curve = self.connector(start, end)
         return curve is None or self.surroundings.allows(curve, self.sag)
 
     def between(self, start: FloatArray, end: FloatArray) -> Way:
-        direct = self.connector(start, end)
-        if direct is None:
-            return Way((), "the ends are the same")
-        if self.surroundings.allows(direct, self.sag):
-            return Way((direct,), "direct")
+        for rank, direct in enumerate(self._direct(start, end)):
+            if direct is None:
+                return Way((), "the ends are the same")
+            if self.surroundings.allows(direct, self.sag):
+                return Way((direct,), "another speed" if rank else "direct")
         refused = self.refused(start, end)
         stations = None if refused else _search(start, end, self)
         if stations is None:
@@ -222,8 +236,8 @@ def roads_of(cover: Cover, robot: Robot, options: Options) -> Roads | None:
         raise InputError("ways around areas are driven forwards; expected areas, or reversing, not both")
     if family.metric == "dubins":
         raise InputError("there are no ways around areas under the metric 'dubins'; expected 'cc'")
-    if family.metric == "cc":
-        return CurvedRoads(surroundings, 1 / family.radius, family.sharpness)
+    if family.curved:
+        return CurvedRoads(surroundings, 1 / family.radius, family.sharpness, family.pace)
     return StraightRoads(surroundings)
 
 

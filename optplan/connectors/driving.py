@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from optplan.connectors.around import Roads, roads_of
-from optplan.connectors.families import Family, family_of, start_states
+from optplan.connectors.families import Family, family_of, limits_between, start_states
 from optplan.connectors.ways import driven
 from optplan.domain.arrays import FloatArray
 from optplan.domain.options import Options
@@ -149,8 +149,9 @@ def connector(
         plain = dubins_path(here[:3], there[:3], family.radius)
         curvatures, lengths = np.array(plain.curvatures), np.array(plain.lengths)
         return Connector(_placed(here, curvatures, np.zeros(len(lengths)), lengths, np.ones(len(lengths))))
-    if family.metric == "cc":
-        curve = cc_path(here, there, 1 / family.radius, family.sharpness)
+    if family.curved:
+        kappa, sharpness = limits_between(here, there, family)
+        curve = cc_path(here, there, kappa, sharpness)
         forwards = np.ones(len(curve.lengths))
         return Connector(_placed(here, curve.curvatures, curve.sharpnesses, curve.lengths, forwards))
     dx, dy = there[:2] - here[:2]

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from optplan.connectors.pace import Pace, pace_of
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.options import Options
-from optplan.domain.robot import Robot
+from optplan.domain.robot import CurvatureLimits, Robot
 
 START_HEADINGS = 36
 """Headings tried at a start point, which itself asks for none."""
@@ -40,6 +41,9 @@ class Family(NamedTuple):
     """greatest change of curvature a metre, 1/m^2 ("cc")"""
     reversing: bool = False
     """whether they may be driven backwards: "dubins" then stands for Reeds-Shepp paths, "cc" for such with cusps"""
+    pace: Pace | None = None
+    """of "time": each connector within the limits of the speed at which it takes the least time; radius and sharpness
+    are those of the slowest"""
 
     @property
     def headings(self) -> bool:
@@ -52,15 +56,27 @@ class Family(NamedTuple):
         Strokes are driven as slowly as their bends ask for; where one begins or ends tighter than this limit, the robot
         stops, and its wheels turn to the other curvature while it stands.
         """
-        if self.metric != "cc":
+        if not self.curved:
             return states
         eased = states.copy()
         eased[:, -1] = np.clip(states[:, -1], -1 / self.radius, 1 / self.radius)
         return eased
 
-    def lengths(self, exits: FloatArray, entries: FloatArray) -> FloatArray:
-        """Lengths (k,) m of connectors between states (k, 5) x, y, z, heading, curvature."""
+    @property
+    def curved(self) -> bool:
+        """Whether curvature is continuous."""
+        return self.metric in ("cc", "time")
+
+    @property
+    def unit(self) -> str:
+        """Of costs: "m", or "s"."""
+        return "s" if self.metric == "time" else "m"
+
+    def costs(self, exits: FloatArray, entries: FloatArray) -> FloatArray:
+        """Metres, or seconds (k,), of connectors between states (k, 5) x, y, z, heading, curvature."""
         exits, entries = self.eased(exits), self.eased(entries)
+        if self.pace is not None:
+            return self.pace.times(exits[:, _FLAT], entries[:, _FLAT])
         if self.metric == "cc":
             from optplan.geometry.cc import cc_lengths
             from optplan.geometry.reversing import reversing_lengths
@@ -77,7 +93,7 @@ class Family(NamedTuple):
         return lengths
 
     def matrix(self, exits: FloatArray, entries: FloatArray, told: Callable[[float], None] | None = None) -> FloatArray:
-        """Lengths (n, m) m from every exit (n, 5) to every entry (m, 5), where headings count.
+        """Metres, or seconds (n, m), from every exit (n, 5) to every entry (m, 5), where headings count.
 
         `told` is called with the share that is done.
         """
@@ -85,6 +101,8 @@ class Family(NamedTuple):
         from optplan.geometry.reversing import reeds_shepp_matrix, reversing_matrix
 
         exits, entries = self.eased(exits), self.eased(entries)
+        if self.pace is not None:
+            return self.pace.matrix(exits[:, _FLAT], entries[:, _FLAT], told)
         if self.metric == "dubins":
             return reeds_shepp_matrix(exits[:, _FLAT[:3]], entries[:, _FLAT[:3]], self.radius, told=told)
         batch = reversing_matrix if self.reversing else cc_matrix
@@ -109,6 +127,11 @@ def family_of(robot: Robot, options: Options) -> Family:
         raise InputError("reversing says nothing about the metric 'euclid'; expected 'dubins' or 'cc'")
     if metric == "euclid":
         return Family(metric)
+    if metric == "time":
+        if reversing:
+            raise InputError("the metric 'time' drives forwards; expected no reversing, or the metric 'cc'")
+        pace = pace_of(robot, options)
+        return Family(metric, 1 / pace.tightest.curvature, pace.tightest.sharpness, pace=pace)
     speed = options.time.speeds(robot.mobility)[1]
     limits = robot.mobility.curvature_limits(speed)
     if not 0 < limits.curvature < math.inf:
@@ -122,7 +145,7 @@ def family_of(robot: Robot, options: Options) -> Family:
 def start_states(
     start: tuple[float, float], heading: float | None, entries: FloatArray, family: Family
 ) -> tuple[FloatArray, FloatArray]:
-    """Best heading (k,) at a start point for reaching entry states (k, 5), and the lengths (k,), m.
+    """Best heading (k,) at a start point for reaching entry states (k, 5), and the costs (k,), m or s.
 
     The robot is set down at its start by hand, so its heading there is free unless it is given; START_HEADINGS of them
     are tried, and the straight line of sight. Its wheels are straight there.
@@ -137,7 +160,14 @@ def start_states(
     for headings in tried:
         states = np.zeros((len(entries), 5))
         states[:, 0], states[:, 1], states[:, 3] = start[0], start[1], headings
-        lengths.append(family.lengths(states, entries))
+        lengths.append(family.costs(states, entries))
     best = np.argmin(lengths, axis=0)
     rows = np.arange(len(entries))
     return tried[best, rows], np.array(lengths)[best, rows]
+
+
+def limits_between(here: FloatArray, there: FloatArray, family: Family) -> CurvatureLimits:
+    """The limits of the connector between two states (4,): of "time", those under which it takes the least time."""
+    if family.pace is None:
+        return CurvatureLimits(1 / family.radius, family.sharpness)
+    return family.pace.rungs[int(np.argmin(family.pace.by_rung(here[None], there[None])[:, 0]))]

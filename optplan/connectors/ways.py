@@ -49,6 +49,9 @@ def ends_of(stroke: Stroke, vertex: IntArray, reverse: bool, robot: Robot, optio
         state[:, : stroke.points.shape[1]] = stroke.points[0]
         state[:, :2] += (-robot.offset.ahead, robot.offset.right)
         return Ends(state, state, np.zeros(count), np.zeros(count))
+    if stroke.headings > 1:
+        lines = [ends_of(stroke.facing(k), np.zeros(1, dtype=np.int64), reverse, robot, options) for k in vertex]
+        return Ends(*(np.concatenate(column) for column in zip(*lines, strict=True)))
     curves, way = curves_of(stroke, robot, options), _drivable(stroke, reverse, robot, options)
     if curves is None or way is None:
         made = _polyline_ends(stroke, vertex, robot, options)
@@ -59,6 +62,8 @@ def ends_of(stroke: Stroke, vertex: IntArray, reverse: bool, robot: Robot, optio
 
 def driven(stroke: Stroke, vertex: int, reverse: bool, robot: Robot, options: Options) -> Pieces:
     """The path of one way: clothoids, lines and arcs, and stops with turns, along a stroke of two points or more."""
+    if stroke.headings > 1:
+        return driven(stroke.facing(vertex), 0, reverse, robot, options)
     curves, way = curves_of(stroke, robot, options), _drivable(stroke, reverse, robot, options)
     if curves is not None and way is not None:
         return _curve_pieces(stroke, curves, way, vertex, reverse)

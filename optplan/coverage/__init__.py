@@ -28,10 +28,26 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
         that this robot or this version does not cover
     """
     from optplan.coverage.drawing import cover_drawing
-    from optplan.domain.job import Drawing
+    from optplan.coverage.field import cover_field
+    from optplan.domain.job import Drawing, Field
     from optplan.domain.options import Options
     from optplan.domain.progress import silent
 
+    options, progress = options or Options(), progress or silent
     if isinstance(job, Drawing):
-        return cover_drawing(job, robot, options or Options(), progress or silent)
-    raise InputError(f"{job.name}: a {type(job).__name__.lower()} cannot be covered yet; expected a drawing")
+        return _kept(cover_drawing(job, robot, options, progress), options.order.keep)
+    if isinstance(job, Field):
+        return _kept(cover_field(job, robot, options, progress), options.order.keep)
+    raise InputError(f"{job.name}: a {type(job).__name__.lower()} cannot be covered yet; expected a drawing or a field")
+
+
+def _kept(made: Cover, keep: str) -> Cover:
+    """With the order of the job, and its directions, where these are kept."""
+    from dataclasses import replace
+
+    if keep == "nothing":
+        return made
+    strokes = made.strokes
+    if keep == "all":
+        strokes = tuple(replace(stroke, directed=not stroke.is_stop, headings=1) for stroke in strokes)
+    return replace(made, strokes=strokes, precedence=tuple((k, k + 1) for k in range(len(strokes) - 1)))

@@ -92,14 +92,22 @@ def _nearest(stroke: Stroke, shares: FloatArray) -> IntArray:
 def _split(stroke: Stroke, stops: IntArray) -> list[Stroke]:
     if len(stops) == 0:
         return [stroke]
+    points, bends = stroke.points, stroke.bends
     if stroke.closed:  # begin at a stop, and come back to it
-        points = np.roll(stroke.points, -int(stops[0]), axis=0)
+        points = np.roll(points, -int(stops[0]), axis=0)
         points = np.concatenate([points, points[:1]])
+        bends = None if bends is None else np.roll(bends, -int(stops[0]))
         cuts = [0, *(stops[1:] - stops[0]).tolist(), len(points) - 1]
     else:
-        points = stroke.points
         cuts = [0, *stops.tolist(), len(points) - 1]
     return [
-        replace(stroke, id=f"{stroke.id}~{k}", points=points[a : b + 1], closed=False, entry=None)
+        replace(
+            stroke,
+            id=f"{stroke.id}~{k}",
+            points=points[a : b + 1],
+            closed=False,
+            entry=None,
+            bends=None if bends is None else bends[a:b],
+        )
         for k, (a, b) in enumerate(pairwise(cuts), start=1)
     ]

@@ -15,9 +15,13 @@ from optplan.domain.robot import CurvatureLimits, Robot, Tool
 from optplan.domain.stroke import Stroke
 from optplan.geometry.rounding import inner_vertices, wrapped
 from optplan.geometry.smoothing import Smoothed, smoothed
+from optplan.geometry.tangents import eased
 
 CREEP = 0.25
 """Share of the work speed to which a robot slows down for a tight curve before it gives up following it."""
+
+EASE = 0.5
+"""Share of the limit of sharpness that is used where lines meet arcs: there is room for that."""
 
 ROOM = 0.9
 """Share of tolerance and limits that the line of a tool beside the robot may use."""
@@ -45,10 +49,24 @@ def curves_of(stroke: Stroke, robot: Robot, options: Options) -> Smoothed | None
         return None
     tolerance = tolerance_of(options.page, robot.tool)
     kappa_max, sigma_max = work_limits(robot, options)
+    if stroke.bends is not None:
+        exact = _exact(stroke, kappa_max if not robot.offset.aside else math.inf, EASE * sigma_max)
+        if exact is not None:
+            return exact
     if robot.offset.aside:
         # the robot's own path beside this one is not exact, and changes its curvature a little faster in places
         tolerance, kappa_max, sigma_max = ROOM * tolerance, ROOM * kappa_max, ROOM * sigma_max
     return _curves(stroke, tolerance, kappa_max, sigma_max, options.connect.corner)
+
+
+@lru_cache(maxsize=5000)
+def _exact(stroke: Stroke, kappa_max: float, sigma_max: float) -> Smoothed | None:
+    """Lines and arcs as they are, where they are no more bent than the limit; beside them, the tool's place decides."""
+    assert stroke.bends is not None
+    if np.abs(stroke.bends).max() > kappa_max:
+        return None
+    made = eased(stroke.points[:, :2], stroke.bends, stroke.closed, sigma_max)
+    return None if made is None else Smoothed((made,), np.zeros(0 if stroke.closed else 1, dtype=np.int64))
 
 
 # covering, ordering and connecting all ask
@@ -79,6 +97,8 @@ def tight_notes(
     limits, corner = work_limits(robot, options), options.connect.corner
     counts: dict[str, int] = {}
     for done, stroke in enumerate(strokes):
+        if stroke.is_stop:
+            continue
         progress(Progress("cover", done / len(strokes), message="curves that the robot can follow"))
         stops = stops_of(stroke, robot, options)
         ring = np.concatenate([stroke.points[-1:], stroke.closed_points])[:, :2]

@@ -154,17 +154,46 @@ class Drawing:
         return replace(self, elements=tuple(map(changed, self.elements)))
 
 
+MOST_PASSES = 20
+"""Of one segment."""
+
+
+class Anchor(NamedTuple):
+    """Where on earth the origin of a field lies (WGS 84)."""
+
+    latitude: float
+    """degrees"""
+    longitude: float
+    """degrees"""
+    bearing: float
+    """degrees clockwise from north in which the field's y axis points"""
+
+
+ACTUATIONS = {"NONE": 0, "PUMP": 1, "VALVE": 2, "SPRAY": 3, "DISC": 4, "ALL": 7}
+"""What a marking robot can switch on, with the numbers of its messages."""
+SAME_PLACE = 1e-6
+"""m within which two given places are one."""
+
+
 @dataclass(frozen=True, eq=False)
 class FieldSegment:
-    """A line or an arc to mark.
+    """A line, an arc or a spot to mark.
 
     Parameters
     ----------
-    id, label : of the segment
-    start, end : (2,) m
-    center : (2,) m of an arc, None for a line
-    sweep : signed angle of the arc, rad, left positive; 0 for a line
-    tool : index of the tool setting; 0 drives without marking
+    id, label : of the segment; ids are unique in the field
+    start, end : (2,) m; a spot has both in its middle
+    center : (2,) m of an arc, None for anything else
+    sweep : signed angle of the arc, rad, left positive, at most a full turn; 0 for anything else
+    spot : diameter of a spot, m; 0 for anything else
+    actuation : one of `ACTUATIONS`; "NONE" is not marked
+    width : of the mark, m; None: as wide as the tool
+    passes : how often it is marked
+    directed : only from start to end
+
+    Raises
+    ------
+    InputError : anything of that violated, naming the segment
     """
 
     id: str
@@ -172,24 +201,83 @@ class FieldSegment:
     end: FloatArray
     center: FloatArray | None = None
     sweep: float = 0.0
-    tool: int = 1
+    spot: float = 0.0
+    actuation: str = "ALL"
+    width: float | None = None
+    passes: int = 1
+    directed: bool = False
     label: str = ""
 
     def __post_init__(self) -> None:
+        what = f"segment {self.id!r}"
         for name in ("start", "end", "center"):
             value = getattr(self, name)
             if value is not None:
-                object.__setattr__(self, name, frozen_floats(value, f"segment {self.id!r} {name}", (2,)))
+                object.__setattr__(self, name, frozen_floats(value, f"{what}: {name}", (2,)))
         if not math.isfinite(self.sweep):
-            raise InputError(f"segment {self.id!r}: the sweep is {self.sweep} rad; expected a finite angle")
+            raise InputError(f"{what}: the sweep is {self.sweep} rad; expected a finite angle")
+        if self.actuation not in ACTUATIONS:
+            raise InputError(f"{what}: the actuation is {self.actuation!r}; expected one of {', '.join(ACTUATIONS)}")
+        if not (math.isfinite(self.spot) and self.spot >= 0):
+            raise InputError(f"{what}: the spot's diameter is {self.spot} m; expected a finite number, 0 or more")
+        if self.width is not None and not (math.isfinite(self.width) and self.width > 0):
+            raise InputError(f"{what}: the width is {self.width} m; expected more than 0")
+        if isinstance(self.passes, bool) or not 1 <= self.passes <= MOST_PASSES:
+            raise InputError(f"{what}: {self.passes} passes; expected 1..{MOST_PASSES}")
         if (self.center is None) != (self.sweep == 0):
-            raise InputError(f"segment {self.id!r}: an arc has a centre and a sweep, a line neither")
+            raise InputError(f"{what}: an arc has a centre and a sweep, a line and a spot have neither")
+        apart = float(np.linalg.norm(self.end - self.start))
         if self.center is not None:
-            radii = [float(np.linalg.norm(point - self.center)) for point in (self.start, self.end)]
-            if abs(radii[0] - radii[1]) > 1e-6 * max(radii) + 1e-9:
-                raise InputError(
-                    f"segment {self.id!r}: start and end are {radii} m from the centre; expected one radius"
-                )
+            self._check_arc(what, self.center)
+        elif self.spot > 0:
+            if apart > SAME_PLACE:
+                raise InputError(f"{what}: a spot starts and ends {apart:g} m apart; expected one place")
+        elif apart <= SAME_PLACE:
+            raise InputError(f"{what}: start and end coincide; expected a line, or the diameter of a spot")
+
+    def _check_arc(self, what: str, center: FloatArray) -> None:
+        radii = [float(np.linalg.norm(point - center)) for point in (self.start, self.end)]
+        if self.spot > 0:
+            raise InputError(f"{what}: is both an arc and a spot; expected one of them")
+        if radii[0] <= SAME_PLACE:
+            raise InputError(f"{what}: the radius is {radii[0]:g} m; expected more than 0")
+        if abs(radii[0] - radii[1]) > 1e-6 * max(radii) + SAME_PLACE:
+            raise InputError(
+                f"{what}: start and end are {radii[0]:g} and {radii[1]:g} m from the centre; expected one radius"
+            )
+        if abs(self.sweep) > 2 * math.pi * (1 + 1e-9):
+            raise InputError(f"{what}: sweeps {math.degrees(self.sweep):g} degrees; expected a turn, 360, at most")
+        missed = float(np.linalg.norm(turned(self.start, center, self.sweep) - self.end))
+        if missed > 1e-6 * radii[0] + SAME_PLACE:
+            raise InputError(
+                f"{what}: the sweep ends {missed:g} m away from the end; expected start, sweep and end to fit"
+            )
+
+    @property
+    def radius(self) -> float:
+        """Of an arc, m; infinite for a line, 0 for a spot."""
+        if self.center is None:
+            return 0.0 if self.spot > 0 else math.inf
+        return float(np.linalg.norm(self.start - self.center))
+
+    @property
+    def length(self) -> float:
+        """m; of a spot, its diameter"""
+        if self.center is not None:
+            return abs(self.sweep) * self.radius
+        return self.spot or float(np.linalg.norm(self.end - self.start))
+
+    @property
+    def closed(self) -> bool:
+        """Whether it is a full circle."""
+        return abs(self.sweep) >= 2 * math.pi * (1 - 1e-9)
+
+
+def turned(point: FloatArray, center: FloatArray, angle: float) -> FloatArray:
+    """A point (2,) turned about a centre by an angle, rad."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    made: FloatArray = center + np.array([[cosine, -sine], [sine, cosine]]) @ (point - center)
+    return made
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,9 +287,16 @@ class Field:
     Parameters
     ----------
     name : for people
-    segments : what to mark
+    segments : what to mark, in the order in which people would
     keep_in : (n, 2) m polygon that the robot stays in, or None
     keep_out : polygons (n, 2) m that it stays out of
+    start : (x, y) m where the robot stands, or None
+    line_width : of all segments that do not state their own, m; None: as wide as the tool
+    anchor : where on earth it lies, or None
+
+    Raises
+    ------
+    InputError : two segments of one id, or no segments
     """
 
     name: str
@@ -209,11 +304,23 @@ class Field:
     keep_in: FloatArray | None = None
     keep_out: tuple[FloatArray, ...] = ()
     notes: tuple[Note, ...] = ()
+    start: tuple[float, float] | None = None
+    line_width: float | None = None
+    anchor: Anchor | None = None
 
     def __post_init__(self) -> None:
+        seen: set[str] = set()
+        for segment in self.segments:
+            if segment.id in seen:
+                raise InputError(f"two segments are called {segment.id!r}; expected ids that differ")
+            seen.add(segment.id)
         if self.keep_in is not None:
             object.__setattr__(self, "keep_in", frozen_floats(self.keep_in, "keep_in", (None, 2)))
         object.__setattr__(self, "keep_out", tuple(frozen_floats(p, "keep_out", (None, 2)) for p in self.keep_out))
+        if self.line_width is not None and not (math.isfinite(self.line_width) and self.line_width > 0):
+            raise InputError(f"the line width is {self.line_width} m; expected more than 0")
+        if self.start is not None and not all(math.isfinite(x) for x in self.start):
+            raise InputError(f"the start is {self.start}; expected finite metres")
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,8 @@ from optplan.domain.errors import InputError
 from optplan.domain.job import FillSettings
 from optplan.domain.robot import Mobility
 
-METRICS = ("auto", "euclid", "dubins", "cc")
+METRICS = ("auto", "euclid", "dubins", "cc", "time")
+KEEP = ("nothing", "order", "all")
 
 Link = tuple[str, int, str, int]
 """An enforced connection: stroke and its drawn vertex, counted from 0 (-1: the last), twice."""
@@ -50,6 +51,8 @@ class CoverOptions:
     elements : settings of single elements, by id; they win over the ones above
     inner_first : whether whatever a closed line encloses is driven before it
     links : connections that have to be driven, one stroke directly after the other
+    cut : whether lines of a field may be left and entered where others meet them
+    headings : directions in which a spot of a field may be driven
     """
 
     direction: float = 0.0
@@ -59,8 +62,13 @@ class CoverOptions:
     elements: tuple[tuple[str, FillSettings], ...] = ()
     inner_first: bool = False
     links: tuple[Link, ...] = ()
+    cut: bool = True
+    headings: int = 8
 
     def __post_init__(self) -> None:
+        _whole("cover", headings=self.headings)
+        if not 1 <= self.headings <= 360:
+            raise InputError(f"cover headings is {self.headings}; expected 1..360")
         FillSettings(self.direction, self.spacing, self.inset)
 
 
@@ -80,6 +88,8 @@ class OrderOptions:
     avoid : m between strokes that are worth a metre not driven over finished work; 0: finished work is no matter
     heading : rad, where the robot faces at the start; None: it is set down as it suits
     drying : s after which finished work may be driven over; None: never
+    keep : "order": strokes are driven in the order of the job; "all": and each from its first point to its last;
+        "nothing"
     """
 
     solver: str = "auto"
@@ -92,12 +102,15 @@ class OrderOptions:
     avoid: float = 0.0
     heading: float | None = None
     drying: float | None = None
+    keep: str = "nothing"
 
     def __post_init__(self) -> None:
         if isinstance(self.avoid, bool) or not 0 <= self.avoid <= MAX_NUMBER:
             raise InputError(f"order avoid is {self.avoid}; expected a number from 0 to {MAX_NUMBER:g}")
         if self.metric not in METRICS:
             raise InputError(f"there is no metric {self.metric!r}; expected one of {', '.join(METRICS)}")
+        if self.keep not in KEEP:
+            raise InputError(f"order keep is {self.keep!r}; expected one of {', '.join(KEEP)}")
         _above_zero("order", seconds=self.seconds, drying=self.drying)
         _whole("order", iterations=self.iterations, seed=self.seed, entries=self.entries)
         if self.iterations is not None and not 0 <= self.iterations < 2**62:

@@ -219,6 +219,7 @@ class Ordering:
     seconds, iterations : work spent
     message : what people should know, e.g. why `auto` chose this solver
     trace : incumbent and bound over time
+    unit : of cost and bound: "m" or "s"
     """
 
     nodes: IntArray
@@ -232,6 +233,7 @@ class Ordering:
     iterations: int = 0
     message: str = ""
     trace: tuple[TracePoint, ...] = ()
+    unit: str = "m"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "nodes", frozen_ints(self.nodes, "ordering nodes", (None,)))

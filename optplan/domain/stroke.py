@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,6 +29,10 @@ class Stroke:
     entry : the vertex where it must be entered (open strokes: 0 or n - 1), or None for a free choice
     element : id of the element of the job that it came from
     layer : the layer (colour) it belongs to, "" when there are none
+    bends : (n - 1,), closed (n,) 1/m, left positive: curvature of the arc or line from each point to the next. They
+        meet tangentially. None: straight lines, or the polyline of a drawn curve
+    headings : a spot may be driven in so many directions, evenly around the middle of its line; its entry vertex then
+        counts them. 1: it is as its points say
 
     Raises
     ------
@@ -44,6 +49,8 @@ class Stroke:
     entry: int | None = None
     element: str = ""
     layer: str = ""
+    bends: FloatArray | None = None
+    headings: int = 1
 
     def __post_init__(self) -> None:
         what = f"stroke {self.id!r}"
@@ -72,6 +79,13 @@ class Stroke:
             allowed = range(len(points)) if self.closed else (0, len(points) - 1)
             if self.entry not in allowed:
                 raise InputError(f"{what} must be entered at vertex {self.entry}, which is no place to enter it")
+        if self.bends is not None:
+            count = len(points) if self.closed else len(points) - 1
+            object.__setattr__(self, "bends", frozen_floats(self.bends, f"{what} bends", (count,)))
+        if self.headings < 1 or (self.headings > 1 and (self.closed or len(points) < 2 or self.entry is not None)):
+            raise InputError(
+                f"{what} has {self.headings} headings; expected 1, or more for an open line entered freely"
+            )
 
     @property
     def is_stop(self) -> bool:
@@ -83,6 +97,17 @@ class Stroke:
         """Length along the points, m."""
         ring = self.closed_points
         return float(np.linalg.norm(np.diff(ring, axis=0), axis=1).sum())
+
+    def facing(self, number: int) -> Stroke:
+        """A spot's line in the direction of this number, 0..headings - 1."""
+        if self.headings == 1:
+            return self
+        angle = 2 * math.pi * number / self.headings
+        middle = (self.points[0] + self.points[-1])[:2] / 2
+        turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+        points = self.points.copy()
+        points[:, :2] = middle + (points[:, :2] - middle) @ turn
+        return replace(self, points=points, headings=1)
 
     @property
     def closed_points(self) -> FloatArray:

@@ -93,8 +93,8 @@ def verify(plan: Plan) -> Report:
     if plan.ordering is None:
         checks += unchecked(["bound", "cost"], "the plan does not say how it was ordered")
     else:
-        checks += [_ordering.bound(plan.ordering), _ordering.cost(plan.ordering, path, robot, options)]
-        claims = [("bound", plan.ordering.bound, "m"), ("gap", plan.ordering.gap, "")]
+        checks += [_ordering.bound(plan.ordering), _ordering.cost(plan.ordering, path, plan.trajectory, robot, options)]
+        claims = [("bound", plan.ordering.bound, plan.ordering.unit), ("gap", plan.ordering.gap, "")]
         figures += [claim for claim in claims if math.isfinite(claim[1])]
     return Report(tuple(checks), tuple(figures))
 

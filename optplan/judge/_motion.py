@@ -21,7 +21,6 @@ from optplan.judge._findings import (
     held,
     noted,
     place_of,
-    work_and_transit_speed,
 )
 from optplan.judge._speeds import Speeds
 
@@ -39,7 +38,7 @@ def motion(path: Path, trajectory: Trajectory, profile: Speeds, robot: Robot, op
     checks = [
         _time(path, trajectory, profile, robot),
         _rest(trajectory),
-        _tool.speed(path, profile, robot, *work_and_transit_speed(robot, options)),
+        _tool.speed(path, profile, robot, options),
         _acceleration(path, trajectory, profile, robot),
         _wheels(path, profile, robot),
         _wheel_acceleration(path, profile, robot),

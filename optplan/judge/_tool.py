@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from optplan.domain.arrays import FloatArray, IntArray
+from optplan.domain.options import Options
 from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check
 from optplan.domain.robot import DiffDrive, Robot
-from optplan.judge._findings import RELATIVE, held, place_of
+from optplan.judge._findings import RELATIVE, held, place_of, work_and_transit_speed
 from optplan.judge._integrate import Samples
 from optplan.judge._speeds import Speeds
 
@@ -60,11 +61,13 @@ def swirls(path: Path, robot: Robot) -> list[Check]:
     return [held("swirls", total, 0.0, "m", place_of(path.start[worst]) if total > 0 else None, detail)]
 
 
-def speed(path: Path, profile: Speeds, robot: Robot, work: float, transit: float) -> Check:
+def speed(path: Path, profile: Speeds, robot: Robot, options: Options) -> Check:
     """Largest speed, m/s, as a share of its limit: that of the tool when it is down, of the robot when it is up.
 
-    The tool moves sqrt((1 + kappa right)^2 + (kappa ahead)^2) times as fast as the robot's reference point.
+    The tool moves sqrt((1 + kappa right)^2 + (kappa ahead)^2) times as fast as the robot's reference point. One speed
+    everywhere is that of the reference point.
     """
+    work, transit = work_and_transit_speed(robot, options)
     if len(profile.row) == 0:
         return held("speed", 0.0, transit, "m/s", detail="Nothing moves.")
     row = profile.row
@@ -72,7 +75,7 @@ def speed(path: Path, profile: Speeds, robot: Robot, work: float, transit: float
     limit = np.where(down, work, transit)
     v = np.maximum(profile.before, profile.after)
     ahead, left = offset_of(robot)
-    if (ahead, left) != (0.0, 0.0):
+    if (ahead, left) != (0.0, 0.0) and options.time.constant_speed is None:
         length = profile.end - profile.begin
         share = np.linspace(0, 1, _PROBES)
         kappa = path.curvature[row] + path.sharpness[row] * (profile.begin + share[:, None] * length)

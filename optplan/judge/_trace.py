@@ -46,6 +46,9 @@ def trace(driven: FloatArray, stroke: Stroke, tolerance: float) -> Trace:
     stroke : what it should be; one of its allowed directions wins over a forbidden one
     tolerance : m; the first reading within it is taken
     """
+    if stroke.headings > 1:
+        lines = [trace(driven, stroke.facing(k), tolerance) for k in range(stroke.headings)]
+        return min(lines, key=lambda found: found.deviation)
     line = in_space(stroke.closed_points)
     if len(line) == 1:
         away = np.linalg.norm(driven - line[0], axis=1)

@@ -8,7 +8,9 @@ import numpy as np
 from pydantic import Field as Entry
 
 from optplan.domain.arrays import FloatArray
+from optplan.domain.errors import InputError
 from optplan.domain.job import (
+    Anchor,
     Curve,
     Drawing,
     Element,
@@ -20,6 +22,7 @@ from optplan.domain.job import (
     Job,
     Note,
     Surface,
+    turned,
 )
 from optplan.schema.base import VERSION, Angle, Length, Model, Point, Point3, Whole
 from optplan.schema.options import FillModel
@@ -71,26 +74,41 @@ class DrawingModel(Model):
 
 
 class SegmentModel(Model):
-    """A line, or an arc with centre and sweep."""
+    """A line (start, end), an arc (start, center, sweep) or a spot (start, spot)."""
 
     id: str = Entry(min_length=1)
-    start: Point
-    end: Point
-    center: Point | None = None
-    sweep: Angle = 0.0
-    tool: Whole = Entry(1, ge=0)
+    start: tuple[Length, Length]
+    end: tuple[Length, Length] | None = Entry(None, description="of a line; that of an arc follows from its sweep")
+    center: tuple[Length, Length] | None = None
+    sweep: Angle = Entry(0.0, description="of an arc, left positive; a bare number is degrees")
+    spot: Length = Entry(0.0, ge=0, description="diameter of a spot, which has its middle at start")
+    actuation: Literal["NONE", "PUMP", "VALVE", "SPRAY", "DISC", "ALL"] = "ALL"
+    width: Length | None = Entry(None, gt=0, description="of the mark; default: the field's line width")
+    passes: Whole = Entry(1, ge=1)
+    directed: bool = Entry(False, description="mark it from start to end only")
     label: str = ""
 
 
+class AnchorModel(Model):
+    """Where on earth the origin lies (WGS 84), and where the y axis points."""
+
+    latitude: float = Entry(ge=-90, le=90)
+    longitude: float = Entry(ge=-180, le=180)
+    bearing: float = Entry(0.0, description="degrees clockwise from north")
+
+
 class FieldModel(Model):
-    """A sports field, in metres."""
+    """A sports field, in metres, or in units that are given with the numbers."""
 
     version: str = VERSION
     kind: Literal["field"] = "field"
     name: str
     segments: list[SegmentModel] = Entry(min_length=1)
-    keep_in: list[Point] | None = None
-    keep_out: list[list[Point]] = Entry(default_factory=list)
+    keep_in: list[tuple[Length, Length]] | None = None
+    keep_out: list[list[tuple[Length, Length]]] = Entry(default_factory=list)
+    start: tuple[Length, Length] | None = Entry(None, description="where the robot stands")
+    line_width: Length | None = Entry(None, gt=0, description="default: as wide as the tool")
+    anchor: AnchorModel | None = None
     notes: list[NoteModel] = Entry(default_factory=list)
 
 
@@ -141,12 +159,16 @@ def job_from(model: DrawingModel | FieldModel | FacadeModel | SurfaceModel) -> J
         case DrawingModel():
             return Drawing(model.name, tuple(map(_element_from, model.elements)), model.unit, model.page, notes)
         case FieldModel():
-            segments = tuple(
-                FieldSegment(s.id, _array(s.start), _array(s.end), _maybe(s.center), s.sweep, s.tool, s.label)
-                for s in model.segments
+            return Field(
+                model.name,
+                tuple(map(_segment, model.segments)),
+                _maybe(model.keep_in),
+                tuple(map(_array, model.keep_out)),
+                notes,
+                model.start,
+                model.line_width,
+                None if model.anchor is None else Anchor(**model.anchor.model_dump()),
             )
-            keep_out = tuple(map(_array, model.keep_out))
-            return Field(model.name, segments, _maybe(model.keep_in), keep_out, notes)
         case FacadeModel():
             no_go = tuple(map(_array, model.no_go))
             stops = _maybe(model.stops)
@@ -171,27 +193,7 @@ def job_model(job: Job) -> DrawingModel | FieldModel | FacadeModel | SurfaceMode
                 name=job.name, unit=job.unit, page=job.page, elements=elements, notes=note_models(job.notes)
             )
         case Field():
-            segments = [
-                {
-                    "id": s.id,
-                    "start": s.start.tolist(),
-                    "end": s.end.tolist(),
-                    "center": None if s.center is None else s.center.tolist(),
-                    "sweep": f"{s.sweep!r} rad",
-                    "tool": s.tool,
-                    "label": s.label,
-                }
-                for s in job.segments
-            ]
-            return FieldModel.model_validate(
-                {
-                    "name": job.name,
-                    "segments": segments,
-                    "keep_in": None if job.keep_in is None else job.keep_in.tolist(),
-                    "keep_out": [ring.tolist() for ring in job.keep_out],
-                    "notes": note_models(job.notes),
-                }
-            )
+            return _field_model(job)
         case Facade():
             return FacadeModel.model_validate(
                 {
@@ -215,6 +217,51 @@ def job_model(job: Job) -> DrawingModel | FieldModel | FacadeModel | SurfaceMode
                     "notes": note_models(job.notes),
                 }
             )
+
+
+def _field_model(job: Field) -> FieldModel:
+    segments = [
+        {
+            "id": s.id,
+            "start": s.start.tolist(),
+            "end": s.end.tolist() if s.spot == 0 else None,
+            "center": None if s.center is None else s.center.tolist(),
+            "sweep": f"{s.sweep!r} rad",
+            "spot": s.spot,
+            "actuation": s.actuation,
+            "width": s.width,
+            "passes": s.passes,
+            "directed": s.directed,
+            "label": s.label,
+        }
+        for s in job.segments
+    ]
+    return FieldModel.model_validate(
+        {
+            "name": job.name,
+            "segments": segments,
+            "keep_in": None if job.keep_in is None else job.keep_in.tolist(),
+            "keep_out": [ring.tolist() for ring in job.keep_out],
+            "start": job.start,
+            "line_width": job.line_width,
+            "anchor": None if job.anchor is None else job.anchor._asdict(),
+            "notes": note_models(job.notes),
+        }
+    )
+
+
+def _segment(model: SegmentModel) -> FieldSegment:
+    start = _array(model.start)
+    if model.end is not None:
+        end = _array(model.end)
+    elif model.center is not None:
+        end = turned(start, _array(model.center), model.sweep)
+    elif model.spot > 0:
+        end = start
+    else:
+        raise InputError(f"segment {model.id!r} has no end; expected that of a line, a centre, or the size of a spot")
+    rest = model.model_dump(include={"sweep", "spot", "actuation", "width", "passes", "directed", "label"})
+    return FieldSegment(model.id, start, end, _maybe(model.center), **rest)
 
 
 def _element_model(element: Element) -> ElementModel:

@@ -42,13 +42,15 @@ class CoverModel(Model):
     links: list[tuple[str, int, str, int]] = Field(
         default_factory=list, description="enforced connections: stroke, drawn vertex (-1: the last), stroke, vertex"
     )
+    cut: bool = Field(True, description="lines of a field may be left and entered where others meet them")
+    headings: int = Field(8, ge=1, le=360, description="directions in which a spot of a field may be driven")
 
 
 class OrderModel(Model):
     """How strokes are ordered."""
 
     solver: str = "auto"
-    metric: str = Field("auto", description="euclid, dubins, cc or auto")
+    metric: str = Field("auto", description="euclid, dubins, cc, time or auto")
     seconds: Duration | None = Field(None, description="time limit")
     iterations: int | None = Field(None, ge=0, description="iteration limit: with a seed a repeatable plan")
     seed: int = Field(0, ge=0, lt=2**31)
@@ -57,6 +59,7 @@ class OrderModel(Model):
     drying: Duration | None = Field(None, description="after it finished work may be driven over; never without it")
     entries: int | None = Field(None, ge=1, description="most vertices at which a closed stroke may be entered")
     avoid: float = Field(0.0, ge=0, description="metres worth a metre not driven over finished work")
+    keep: str = Field("nothing", description="of the job: nothing, its order, or all: order and directions")
 
 
 class ConnectModel(Model):
@@ -107,6 +110,8 @@ def options_from(model: OptionsModel) -> Options:
                 elements,
                 cover.inner_first,
                 tuple(cover.links),
+                cover.cut,
+                cover.headings,
             ),
             OrderOptions(**model.order.model_dump()),
             ConnectOptions(

@@ -42,6 +42,8 @@ class StrokeModel(Model):
     entry: Whole | None = None
     element: str = ""
     layer: str = ""
+    bends: list[float] | None = Entry(None, description="curvature from each point to the next, 1/m, left positive")
+    headings: Whole = Entry(1, ge=1, description="of a spot: how many directions it may be driven in")
 
 
 class AreaModel(Model):
@@ -78,6 +80,7 @@ class OrderingModel(Model):
     iterations: int = 0
     message: str = ""
     trace: list[tuple[float, float | None, float | None]] = Entry(default_factory=list)
+    unit: Literal["m", "s"] = Entry("m", description="of cost and bound")
 
 
 class VisitsModel(Model):
@@ -273,6 +276,8 @@ def _cover_model(cover: Cover) -> CoverModel:
             entry=stroke.entry,
             element=stroke.element,
             layer=stroke.layer,
+            bends=None if stroke.bends is None else stroke.bends.tolist(),
+            headings=stroke.headings,
         )
         for stroke in cover.strokes
     ]
@@ -302,6 +307,8 @@ def _cover_from(model: CoverModel) -> Cover:
             s.entry,
             s.element,
             s.layer,
+            None if s.bends is None else _array(s.bends),
+            s.headings,
         )
         for s in model.strokes
     )
@@ -331,6 +338,7 @@ def _ordering_model(ordering: Ordering) -> OrderingModel:
         iterations=ordering.iterations,
         message=ordering.message,
         trace=[(p.seconds, _finite(p.cost), _finite(p.bound)) for p in ordering.trace],
+        unit="s" if ordering.unit == "s" else "m",
     )
 
 
@@ -350,6 +358,7 @@ def _ordering_from(model: OrderingModel) -> Ordering:
             TracePoint(s, math.inf if cost is None else cost, -math.inf if bound is None else bound)
             for s, cost, bound in model.trace
         ),
+        model.unit,
     )
 
 

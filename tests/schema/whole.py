@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from optplan.domain.job import (
+    Anchor,
     Curve,
     Drawing,
     Element,
@@ -43,13 +44,23 @@ def jobs() -> dict[str, Job]:
         Element("b", (ring,), None, "#000000"),
     )
     segments = (
-        FieldSegment("l", array([0, 0]), array([5, THIRD]), tool=0, label="side"),
+        FieldSegment("l", array([0, 0]), array([5, THIRD]), actuation="NONE", width=THIRD, passes=2, label="side"),
+        FieldSegment("s", array([1, THIRD]), array([1, THIRD]), spot=0.22, directed=True),
         FieldSegment("c", array([1, 0]), array([math.cos(2.1), math.sin(2.1)]), array([0, 0]), 2.1),
     )
     up = np.tile([0.6, 0.0, 0.8], (3, 1))
     return {
         "drawing": Drawing("d", elements, 0.001, (0.21, 0.297), NOTES),
-        "field": Field("f", segments, box(-9, -9, 18, 18), (box(0, 0, 1, 1), box(2, 2, 1, 1)), NOTES),
+        "field": Field(
+            "f",
+            segments,
+            box(-9, -9, 18, 18),
+            (box(0, 0, 1, 1), box(2, 2, 1, 1)),
+            NOTES,
+            (1.0, THIRD),
+            0.1,
+            Anchor(52.5, 13.25, THIRD),
+        ),
         "facade": Facade("w", box(0, 0, 9, 9), (box(1, 1, 1, 1),), array([[3, 3], [4, THIRD]]), 0.9, 0.7, 1.9, NOTES),
         "bare field": Field("f", segments[:1]),
         "bare facade": Facade("w", box(0, 0, 9, 9)),
@@ -60,8 +71,16 @@ def jobs() -> dict[str, Job]:
 
 OPTIONS = Options(
     PageOptions(30.0, 20.0, THIRD, 0.01),
-    CoverOptions(0.1 + 0.2, 0.3, 0.2, False, (("a", FillSettings(THIRD, None, 0.1)), ("b", FillSettings()))),
-    OrderOptions("search", "euclid", 2.5, 100, 7, (1.5, -THIRD), 12, heading=THIRD, drying=2.5),
+    CoverOptions(
+        0.1 + 0.2,
+        0.3,
+        0.2,
+        False,
+        (("a", FillSettings(THIRD, None, 0.1)), ("b", FillSettings())),
+        cut=False,
+        headings=5,
+    ),
+    OrderOptions("search", "euclid", 2.5, 100, 7, (1.5, -THIRD), 12, heading=THIRD, drying=2.5, keep="order"),
     ConnectOptions(math.radians(33.3), reversing=True),
     TimeOptions(0.3, THIRD, 2.5, THIRD),
 )
@@ -71,14 +90,14 @@ def plan() -> Plan:
     """Every section there, made up but consistent."""
     strokes = (
         Stroke("s1", array([[0, 0], [1, THIRD]]), 2, directed=True, entry=0, element="a", layer="sky"),
-        Stroke("s2", box(3, 3, 1, 1), 1, closed=True, dwell=0.5),
+        Stroke("s2", box(3, 3, 1, 1), 1, closed=True, dwell=0.5, bends=array([0, THIRD, 0, -0.1])),
         Stroke("s3", array([[0, 0, 1], [1, 0, THIRD]]), 1, normals=array([[0, 0, 1], [0.6, 0, 0.8]])),
     )
     areas = (Area("a", (box(0, 0, 5, 5), box(1, 1, 1, THIRD)), 2),)
     cover = Cover(strokes, areas, ((0, 1), (0, 2)), (0.5, THIRD), Canvas(20.0, 10.0, 0.5), NOTES)
     trace = (TracePoint(0.1, math.inf, -math.inf), TracePoint(0.2, 9.0, 3.0))
     ordering = Ordering(
-        np.array([0, 3]), 9.0, 3.0, Status.FEASIBLE, StopReason.TIME, "search", 7, 2.5, 100, "because", trace
+        np.array([0, 3]), 9.0, 3.0, Status.FEASIBLE, StopReason.TIME, "search", 7, 2.5, 100, "because", trace, "s"
     )
     states = np.arange(15.0).reshape(3, 5) / 7
     visits = Traversals(
