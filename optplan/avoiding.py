@@ -9,6 +9,7 @@ import numpy as np
 
 from optplan.connectors.families import family_of
 from optplan.connectors.finished import Marks, connector_lines
+from optplan.connectors.padding import padded
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.options import Options
 from optplan.domain.ordering import MatrixCosts, Ordering, OrderingProblem, Status
@@ -60,6 +61,8 @@ def avoid_finished(
     family, count = family_of(robot, options), problem.clusters
     # a metre is worth what it takes to drive it
     weight = options.order.avoid / (family.pace.numbers[2] if family.pace is not None else 1.0)
+    entry, leave = padded(ways, options)
+    ways = replace(ways, entry=entry, exit=leave)
     marks, stroke = Marks(cover.strokes, robot), problem.cluster
     costs = dense_costs(problem)
     extra = np.zeros_like(costs)

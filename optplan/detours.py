@@ -9,6 +9,7 @@ import numpy as np
 
 from optplan.connectors.around import Roads, roads_of
 from optplan.connectors.families import Family, family_of, start_states
+from optplan.connectors.padding import padded
 from optplan.domain.options import Options
 from optplan.domain.ordering import MatrixCosts, Ordering, OrderingProblem, Status
 from optplan.domain.progress import Progress, ProgressCallback
@@ -56,6 +57,8 @@ def with_detours(
     if problem.nodes > DENSE_NODES:
         more = f"areas are not in the costs: {problem.nodes} ways of driving, at most {DENSE_NODES}"
         return replace(found, message=f"{found.message}; {more}".removeprefix("; ")), problem
+    entry, leave = padded(ways, options)
+    ways = replace(ways, entry=entry, exit=leave)
     costs, begin = dense_costs(problem).copy(), problem.start_costs.copy()
     start, family = options.order.start or cover.start, family_of(robot, options)
     exits, entries = family.eased(ways.exit), family.eased(ways.entry)

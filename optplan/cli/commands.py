@@ -21,6 +21,7 @@ from optplan.cli.settings import (
     ConfigFile,
     ConstantSpeed,
     Corner,
+    CurvedPadding,
     Cut,
     Direction,
     Drying,
@@ -47,6 +48,7 @@ from optplan.cli.settings import (
     Motor,
     Noise,
     OnCanvas,
+    Padding,
     PowerLimit,
     Reversing,
     RobotName,
@@ -164,6 +166,8 @@ def plan_command(
     on_canvas: OnCanvas = None,
     clearance: Clearance = None,
     reversing: Reversing = None,
+    padding: Padding = None,
+    curved_padding: CurvedPadding = None,
     work_speed: WorkSpeed = None,
     transit_speed: TransitSpeed = None,
     jerk: JerkLimit = None,
@@ -405,6 +409,8 @@ def order(
     on_canvas: OnCanvas = None,
     clearance: Clearance = None,
     reversing: Reversing = None,
+    padding: Padding = None,
+    curved_padding: CurvedPadding = None,
 ) -> None:
     """Order: which stroke after which, entered where."""
     from optplan.cli.ordering import is_instance, order_instance
@@ -413,7 +419,18 @@ def order(
     flags = dict(locals())
     file = shipped_or_file(file)
     if is_instance(file):
-        for name in ("metric", "start", "entries", "avoid", "drying", "areas", "on_canvas", "clearance", "reversing"):
+        for name in (
+            "metric",
+            "start",
+            "entries",
+            "avoid",
+            "drying",
+            "areas",
+            "on_canvas",
+            "clearance",
+            "reversing",
+            "padding",
+        ):
             if flags[name] is not None:
                 flag = "--avoid-finished" if name == "avoid" else f"--{name.replace('_', '-')}"
                 raise InputError("says nothing about an instance of a library, which has its costs", flag)
@@ -458,6 +475,8 @@ def connect(
     on_canvas: OnCanvas = None,
     clearance: Clearance = None,
     reversing: Reversing = None,
+    padding: Padding = None,
+    curved_padding: CurvedPadding = None,
 ) -> None:
     """Connect: the path along all strokes and between them."""
     _stage("connect", file, out, dict(locals()), rest, force, quiet, json)

@@ -76,6 +76,14 @@ Reversing = Annotated[
     bool | None,
     typer.Option("--reversing/--forwards", help="Connectors may be driven backwards, by a robot that can."),
 ]
+Padding = Annotated[
+    str | None,
+    typer.Option(help="Driven before and after strokes with the tool up, to compare: 50cm or 50cm,10cm."),
+]
+CurvedPadding = Annotated[
+    bool | None,
+    typer.Option("--curved-padding/--straight-padding", help="Padding is bent like the stroke's end."),
+]
 WorkSpeed = Annotated[str | None, typer.Option(help="With the tool down, m/s.")]
 TransitSpeed = Annotated[str | None, typer.Option(help="With the tool up, m/s.")]
 JerkLimit = Annotated[str | None, typer.Option("--jerk", help="Limit of the acceleration's change, m/s^3.")]
@@ -125,6 +133,7 @@ _PLACES = {
     "on_canvas": ("connect", "on_canvas"),
     "clearance": ("connect", "clearance"),
     "reversing": ("connect", "reversing"),
+    "curved_padding": ("connect", "curved_padding"),
     "work_speed": ("time", "work_speed"),
     "transit_speed": ("time", "transit_speed"),
     "jerk": ("time", "jerk"),
@@ -166,6 +175,11 @@ def settings_of(base: dict[str, Any], flags: dict[str, Any]) -> Options:
         tables.setdefault("page", {}).update(width=width, height=height)
     if flags.get("start") is not None:
         tables.setdefault("order", {}).update(pose(flags["start"], "--start"))
+    if flags.get("padding") is not None:
+        parts = [part.strip() for part in flags["padding"].split(",")]
+        if len(parts) > 2:
+            raise InputError(f"{flags['padding']!r} is no padding; expected BEFORE or BEFORE,AFTER", "--padding")
+        tables.setdefault("connect", {}).update(pad_before=parts[0], pad_after=parts[-1])
     if flags.get("areas") is not None:
         tables.setdefault("connect", {}).update(_areas(flags["areas"]))
         if flags.get("clearance") is not None:

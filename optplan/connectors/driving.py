@@ -9,6 +9,7 @@ import numpy as np
 
 from optplan.connectors.around import Roads, roads_of
 from optplan.connectors.families import Family, family_of, limits_between, start_states
+from optplan.connectors.padding import padded, pieces_between
 from optplan.connectors.ways import driven
 from optplan.domain.arrays import FloatArray
 from optplan.domain.options import Options
@@ -75,13 +76,15 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     InputError : a metric that this robot cannot have
     """
     options = options or Options()
+    asked = options.connect
+    entry, _ = padded(visits, options)
     family, roads = family_of(robot, options), roads_of(cover, robot, options)
     turns = not math.isinf(robot.mobility.turn_rate)
     rows = _Rows([], [], [], [], [], [], [], [], [], [])
     start = options.order.start or cover.start
     here: FloatArray | None = None  # x, y, heading, curvature
     if start is not None and len(visits):
-        first = visits.entry[:1]
+        first = entry[:1]
         heading = options.order.heading
         if family.headings:
             heading = start_states(start, heading, first, family)[0][0]
@@ -100,14 +103,16 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
         else:
             pieces = driven(stroke, visit.entry_vertex, visit.reverse, robot, options)
             there = np.array([*pieces.start[0], pieces.heading[0], pieces.curvature[0]])
+        lead = entry[row][[0, 1, 3, 4]] if asked.pad_before > 0 else there
         if here is not None:
-            begun, ended = family.eased(np.array([here, there]))
+            begun, ended = family.eased(np.array([here, lead]))
             if begun[3] != here[3]:
                 rows.add(_pieces([_turn(here, 0.0)]), RAISED, int(visits.stroke[row - 1]) if row else -1)
             joined = connector(begun, ended, family, turns, roads)
             rows.add(joined.pieces, RAISED, -1, gear=joined.gear)
-            if ended[3] != there[3]:
-                rows.add(_pieces([_turn(there, 0.0)]), RAISED, visit.stroke)
+            if ended[3] != lead[3]:
+                rows.add(_pieces([_turn(lead, 0.0)]), RAISED, visit.stroke)
+        rows.add(pieces_between(lead, asked.pad_before, asked.curved_padding), RAISED, -1)
         # pins that stay down while the robot turns sharply would draw a swirl
         sharp = (pieces.length == 0) & (np.abs(pieces.turn) > options.connect.corner) & turns
         tool = np.where(sharp, RAISED, stroke.tool)
@@ -115,6 +120,10 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
             tool, pieces = tool[pieces.length > 0], _without_turns(pieces)
         rows.add(pieces, tool, visit.stroke, stroke.dwell)
         here = _end(pieces)
+        if asked.pad_after > 0:
+            tail = pieces_between(here, asked.pad_after, asked.curved_padding)
+            rows.add(tail, RAISED, -1)
+            here = _end(tail)
     return _path(rows)
 
 

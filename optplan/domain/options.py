@@ -146,6 +146,9 @@ class ConnectOptions:
     on_canvas : whether connectors stay on the canvas
     clearance : between connectors and the borders of all of these, m
     reversing : whether connectors may be driven backwards, by a robot that can; strokes are driven forwards
+    pad_before, pad_after : m driven with the tool up in the direction of a stroke, before and after it, as older
+        planners have it: to compare with
+    curved_padding : whether padding goes on with the curvature of the stroke's end; else it is straight
     """
 
     corner: float = math.radians(30)
@@ -154,8 +157,16 @@ class ConnectOptions:
     on_canvas: bool = False
     clearance: float = 0.0
     reversing: bool = False
+    pad_before: float = 0.0
+    pad_after: float = 0.0
+    curved_padding: bool = False
 
     def __post_init__(self) -> None:
+        for side in ("pad_before", "pad_after"):
+            if isinstance(getattr(self, side), bool) or not 0 <= getattr(self, side) <= MAX_NUMBER:
+                raise InputError(f"connect {side} is {getattr(self, side)} m; expected 0 to {MAX_NUMBER:g}")
+        if not isinstance(self.curved_padding, bool):
+            raise InputError(f"curved_padding is {self.curved_padding!r}; expected true or false")
         if not 0 < self.corner <= math.pi:
             raise InputError(f"corner is {self.corner} rad; expected more than 0 and at most pi")
         if isinstance(self.clearance, bool) or not 0 <= self.clearance <= MAX_NUMBER:
@@ -168,6 +179,11 @@ class ConnectOptions:
                 raise InputError(f"{name} has {len(ring)} vertices; expected 3 or more")
             if not all(abs(x) <= MAX_NUMBER for place in ring for x in place):
                 raise InputError(f"{name} has a vertex that is no place; expected x, y in m, at most {MAX_NUMBER:g}")
+
+    @property
+    def padding(self) -> float:
+        """Of one stroke, m."""
+        return self.pad_before + self.pad_after
 
 
 @dataclass(frozen=True)

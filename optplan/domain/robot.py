@@ -299,6 +299,38 @@ class Canvas:
 
 
 @dataclass(frozen=True)
+class Supplies:
+    """What a robot uses up: an estimate needs no more.
+
+    Parameters
+    ----------
+    name : of what the tool gives: "paint", "water"; "" when it gives nothing
+    per_area : m^3 of it a m^2 of marks
+    flow : m^3/s of it while the tool works
+    tank : m^3 of it that the robot carries; infinite when it need not
+    power : W from the battery, on average
+    battery : J of a full charge; infinite when it need not be charged
+    """
+
+    name: str = ""
+    per_area: float = 0.0
+    flow: float = 0.0
+    tank: float = math.inf
+    power: float = 0.0
+    battery: float = math.inf
+
+    def __post_init__(self) -> None:
+        for name in ("per_area", "flow", "power"):
+            if not 0 <= getattr(self, name) <= MAX_NUMBER:
+                raise InputError(f"{name} is {getattr(self, name)}; expected a finite number, 0 or more")
+        for name in ("tank", "battery"):
+            if not getattr(self, name) > 0:
+                raise InputError(f"{name} is {getattr(self, name)}; expected more than 0")
+        if (self.per_area > 0 or self.flow > 0) and not self.name:
+            raise InputError("what the tool gives has no name; expected one, such as 'paint'")
+
+
+@dataclass(frozen=True)
 class Robot:
     """A tool on a mobility, with the canvas it is usually given.
 
@@ -308,6 +340,7 @@ class Robot:
     tool, mobility : see there
     canvas : where drawings go unless the user says otherwise; None keeps a drawing's own size
     sources : where each number comes from: {"mobility.track": "measured"}; numbers that somebody just chose say so
+    supplies : what it uses up, or None when nobody knows
     """
 
     name: str
@@ -316,6 +349,7 @@ class Robot:
     mobility: Mobility
     canvas: Canvas | None = None
     sources: tuple[tuple[str, str], ...] = ()
+    supplies: Supplies | None = None
 
     @property
     def offset(self) -> ToolPlace:

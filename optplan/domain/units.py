@@ -29,6 +29,11 @@ SPECIFIC_POWER = {"W/kg": 1.0}
 RATE = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": 2 * math.pi / 60}
 RATE_CHANGE = {"rad/s^2": 1.0, "rad/s2": 1.0, "deg/s^2": math.pi / 180}
 SHARPNESS = {"1/m^2": 1.0, "1/m2": 1.0}
+VOLUME = {"m^3": 1.0, "m3": 1.0, "L": 1e-3, "l": 1e-3, "ml": 1e-6}
+PER_AREA = {"m": 1.0, "L/m^2": 1e-3, "L/m2": 1e-3, "ml/m^2": 1e-6}
+FLOW = {"m^3/s": 1.0, "L/s": 1e-3, "L/min": 1e-3 / 60}
+POWER = {"W": 1.0, "kW": 1e3}
+ENERGY = {"J": 1.0, "Wh": 3600.0, "kWh": 3.6e6}
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)?\s*")
 

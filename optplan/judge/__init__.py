@@ -19,6 +19,7 @@ from optplan.judge import (
     _motion,
     _ordering,
     _strokes,
+    _supplies,
     _tool,
     _wheels,
 )
@@ -65,7 +66,8 @@ def verify(plan: Plan) -> Report:
     if cover is None:
         checks += unchecked(_COVER_CHECKS, "the plan has no strokes")
     else:
-        done, deviation, exact = _strokes.strokes(carried, marks, cover, limit)
+        done, deviation, exact, aside = _strokes.strokes(carried, marks, cover, limit)
+        figures += aside
         links = _strokes.connections(carried, marks, cover, limit)
         checks += [done, deviation, _strokes.precedence(path, cover), links]
     if plan.visits is None:
@@ -85,10 +87,17 @@ def verify(plan: Plan) -> Report:
         wheels = _wheels.wheels_over_finished(path, samples, cover, robot, options, plan.trajectory)
         checks += [*covered, _finished.over_finished(path, samples, cover, robot), wheels]
     if plan.trajectory is None or profile is None:
-        checks += unchecked(_motion.NAMES, "the plan has no speeds")
+        checks += unchecked([*_motion.NAMES, _supplies.NAME], "the plan has no speeds")
     else:
         checks += _motion.motion(path, plan.trajectory, profile, robot, options)
-        figures += _motion.durations(path, plan.trajectory, profile)
+        taken = _motion.durations(path, plan.trajectory, profile)
+        figures += taken
+        area = {name: value for name, value, _ in areas}
+        marked = area.get("done area", 0.0) + area.get("overlap area", 0.0)
+        times = {name: value for name, value, _ in taken}
+        used, amounts = _supplies.supplies(robot, marked, times["work time"], times["duration"])
+        checks.append(used)
+        figures += amounts
     figures += areas
     if plan.ordering is None:
         checks += unchecked(["bound", "cost"], "the plan does not say how it was ordered")

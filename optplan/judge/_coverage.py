@@ -18,13 +18,15 @@ from optplan.domain.stroke import Stroke
 from optplan.judge._findings import Place, count_of, held, noted, unchecked
 from optplan.judge._integrate import Samples
 
-NAMES = ("coverage", "area coverage", "overspill")
+NAMES = ("coverage", "area coverage", "overspill", "overlap")
 QUADRANT = 8
 """Segments of a quarter circle around the end of a mark; both sides of a comparison are drawn alike."""
 _BIT = 8
 """Segments that are outlined in one go where a line curls."""
 _CURLED = 20 * math.pi
 """rad of turning below which a line is outlined in one go."""
+_MOST_PAIRS = 2000
+"""Marks that overlap, up to which the place where most of it is is looked for."""
 _GRID = 1e-8
 """m, of the grid that saves an overlay which fails in floating point."""
 
@@ -93,16 +95,31 @@ def coverage(
     marks = _mark_check(shapely, lines[~same], width[~same], own, made, limit)
     astray = _union(shapely, driven.shapes[driven.stroke < 0])
     overspill = noted("overspill", spilled, "m2", "Marked besides what was wanted.", _spot(shapely, astray))
+    overlap = _overlap_check(shapely, made, marked)
     figures: Figures = [
         ("wanted area", total, "m2"),
         ("done area", marked, "m2"),
         ("missed area", missed, "m2"),
         ("overspill area", spilled, "m2"),
+        ("overlap area", overlap.value, "m2"),
         ("coverage", 1 - missed / total if total > 0 else 1.0, ""),
     ]
     if cover.areas:
         figures.append(("area coverage", area_check.value, ""))
-    return [marks, area_check, overspill], figures
+    return [marks, area_check, overspill, overlap], figures
+
+
+def _overlap_check(shapely: Any, made: Any, marked: float) -> Check:
+    """Area that is marked more than once, counted once for each time beyond the first, and where most of it is."""
+    twice = max(float(shapely.area(made).sum()) - marked, 0.0) if len(made) else 0.0
+    place: Place | None = None
+    if twice > 0:
+        one, other = shapely.STRtree(made).query(made, predicate="intersects")
+        pair = np.flatnonzero(one < other)
+        if 0 < len(pair) <= _MOST_PAIRS:
+            common = [_overlay(shapely, shapely.intersection, made[one[k]], made[other[k]]) for k in pair.tolist()]
+            place = _spot(shapely, common[int(np.argmax(shapely.area(common)))])
+    return noted("overlap", twice, "m2", "Marked more than once, by strokes that meet or lie side by side.", place)
 
 
 def _own_marks(shapely: Any, number: IntArray, driven: Marks) -> Any:

@@ -17,6 +17,9 @@ from optplan.judge._findings import GAP, Place, count_of, held, noted, place_of
 from optplan.judge._integrate import Samples
 from optplan.judge._trace import Trace, arc_lengths, in_space, trace
 
+NEAR = 0.005
+"""m: what counts as on the line in the figure `within 5 mm`."""
+Figures = list[tuple[str, float, str]]
 _TWICE = 1.75
 """Driven length over stroke length from which a stroke counts as driven twice in one go."""
 
@@ -41,11 +44,13 @@ def runs(path: Path) -> list[Run]:
     return [Run(int(label[a]), int(rows[a]), int(rows[b])) for a, b in zip(first, last, strict=True) if label[a] >= 0]
 
 
-def strokes(path: Path, samples: Samples, cover: Cover, limit: float) -> tuple[Check, Check, BoolArray]:
+def strokes(path: Path, samples: Samples, cover: Cover, limit: float) -> tuple[Check, Check, BoolArray, Figures]:
     """The checks `strokes` (how many are not done exactly once as they should be) and `deviation` (m).
 
-    Also (n,) which strokes were driven faultlessly along their own points, to within `GAP`: their marks are theirs.
+    Also (n,) which strokes were driven faultlessly along their own points, to within `GAP`: their marks are theirs; and
+    the mean deviation, with the share of the driven length that is within `NEAR` of its stroke.
     """
+    aside = _Aside()
     exact = np.zeros(len(cover.strokes), dtype=bool)
     faults: dict[int, str] = {}
     where: dict[int, Place] = {}
@@ -62,6 +67,7 @@ def strokes(path: Path, samples: Samples, cover: Cover, limit: float) -> tuple[C
         found = trace(points, stroke, limit)
         if spot is None or found.deviation > farthest:
             farthest, spot, culprit = found.deviation, place_of(found.place), stroke.id
+        aside.add(points, stroke, found.deviation)
         fault = _fault(path, run, stroke, found, float(arc_lengths(points)[-1]), limit)
         exact[run.stroke] = found.deviation <= GAP
         if fault:
@@ -80,7 +86,46 @@ def strokes(path: Path, samples: Samples, cover: Cover, limit: float) -> tuple[C
     place = where[min(faults)] if faults else None
     done = held("strokes", len(faults), 0, "", place, detail)
     detail = f"Stroke {culprit} is followed least closely." if culprit else "No stroke is driven."
-    return done, held("deviation", farthest, limit, "m", spot, detail, slack=GAP), exact
+    return done, held("deviation", farthest, limit, "m", spot, detail, slack=GAP), exact, aside.figures()
+
+
+class _Aside:
+    """How far driven lines are beside their strokes, over all of their length."""
+
+    def __init__(self) -> None:
+        self.length = self.sum = self.near = 0.0
+
+    def add(self, points: FloatArray, stroke: Stroke, most: float) -> None:
+        """Points (n, 3) driven for a stroke, none farther away than `most`, m."""
+        step = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        total = float(step.sum())
+        self.length += total
+        if most <= GAP or stroke.points.shape[1] == 3:
+            self.near += total if most <= NEAR else 0.0
+            self.sum += most * total
+            return
+        import shapely
+
+        ways = [stroke.facing(k) for k in range(stroke.headings)]
+        lines = [
+            shapely.linestrings(way.closed_points) if not way.is_stop else shapely.points(*way.points[0])
+            for way in ways
+        ]
+        shapely.prepare(lines)
+        spots = shapely.points(points[:, :2])
+        away = min((shapely.distance(line, spots) for line in lines), key=lambda found: float(found.sum()))
+        # between two points the distance changes evenly
+        low, high = np.minimum(away[1:], away[:-1]), np.maximum(away[1:], away[:-1])
+        self.sum += float(((low + high) / 2 * step).sum())
+        share = np.clip((NEAR - low) / np.maximum(high - low, GAP * NEAR), 0, 1)
+        self.near += float((step * share).sum())
+
+    def figures(self) -> Figures:
+        """mean deviation, m, and the share of the length within `NEAR`"""
+        if self.length == 0:
+            return []
+        share = min(self.near / self.length, 1.0)
+        return [("mean deviation", self.sum / self.length, "m"), ("within 5 mm", share, "")]
 
 
 def precedence(path: Path, cover: Cover) -> Check:

@@ -14,6 +14,7 @@ from optplan.domain.result import Plan
 from optplan.domain.robot import MIDDLE, DiffDrive, ToolPlace
 from optplan.geometry.paths import along
 from optplan.geometry.tools import tool_positions
+from optplan.plot.faults import draw_faults
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,6 +76,7 @@ def figure(plan: Plan) -> Figure:
         _draw_path(axes, plan, plan.path, colours, points_per_metre)
     _draw_areas(axes, plan)
     _draw_places(axes, plan, colours)
+    draw_faults(axes, plan)
     _draw_title(made, plan, colours)
     return made
 

@@ -13,7 +13,7 @@ from pydantic_core import CoreSchema, core_schema
 from optplan.domain import units
 from optplan.domain.errors import InputError
 
-VERSION = "1.4"
+VERSION = "1.5"
 """Version of the file formats. A newer minor version adds what an older program may not leave out."""
 
 
@@ -63,6 +63,11 @@ Rate = Annotated[float, _Unit(units.RATE, "rad/s", "90 deg/s")]
 RateChange = Annotated[float, _Unit(units.RATE_CHANGE, "rad/s^2", "40 rad/s^2")]
 Jerk = Annotated[float, _Unit(units.JERK, "m/s^3", "2 m/s^3")]
 SpecificPower = Annotated[float, _Unit(units.SPECIFIC_POWER, "W/kg", "1 W/kg")]
+Volume = Annotated[float, _Unit(units.VOLUME, "m^3", "20 L")]
+PerArea = Annotated[float, _Unit(units.PER_AREA, "m", "0.13 L/m^2")]
+Flow = Annotated[float, _Unit(units.FLOW, "m^3/s", "6 L/min")]
+Power = Annotated[float, _Unit(units.POWER, "W", "136 W")]
+Energy = Annotated[float, _Unit(units.ENERGY, "J", "680 Wh")]
 Sharpness = Annotated[float, _Unit(units.SHARPNESS, "1/m^2", "4 1/m^2")]
 Angle = Annotated[float, _Unit(units.ANGLE, "deg", "30 deg", written="rad")]
 Duration = Annotated[float, _Unit(units.TIME, "s", "2 min")]

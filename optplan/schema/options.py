@@ -73,6 +73,9 @@ class ConnectModel(Model):
     on_canvas: bool = Field(False, description="connectors stay on the canvas")
     clearance: Length = Field(0.0, description="between connectors and the borders of these areas")
     reversing: bool = Field(False, description="connectors may be driven backwards, by a robot that can")
+    pad_before: Length = Field(0.0, ge=0, description="driven with the tool up before each stroke, to compare with")
+    pad_after: Length = Field(0.0, ge=0, description="and after each")
+    curved_padding: bool = Field(False, description="padding goes on with the curvature of the stroke's end")
 
 
 class TimeModel(Model):
@@ -121,6 +124,9 @@ def options_from(model: OptionsModel) -> Options:
                 model.connect.on_canvas,
                 model.connect.clearance,
                 model.connect.reversing,
+                model.connect.pad_before,
+                model.connect.pad_after,
+                model.connect.curved_padding,
             ),
             TimeOptions(**model.time.model_dump()),
         )

@@ -3,14 +3,29 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields
+from dataclasses import asdict, fields
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from optplan.domain.errors import InputError, located
-from optplan.domain.robot import Arm, Boom, Canvas, DiffDrive, Gantry, Mobility, Robot, Tool, ToolSetting
-from optplan.schema.base import VERSION, Acceleration, Duration, Length, Model, Rate, RateChange, Sharpness, Speed
+from optplan.domain.robot import Arm, Boom, Canvas, DiffDrive, Gantry, Mobility, Robot, Supplies, Tool, ToolSetting
+from optplan.schema.base import (
+    VERSION,
+    Acceleration,
+    Duration,
+    Energy,
+    Flow,
+    Length,
+    Model,
+    PerArea,
+    Power,
+    Rate,
+    RateChange,
+    Sharpness,
+    Speed,
+    Volume,
+)
 
 
 class ToolSettingModel(Model):
@@ -90,6 +105,17 @@ class CanvasModel(Model):
     margin: Length = 0.0
 
 
+class SuppliesModel(Model):
+    """What a robot uses up."""
+
+    name: str = Field("", description="of what the tool gives: paint, water")
+    per_area: PerArea = Field(0.0, description="of it for the marks, e.g. '0.13 L/m^2'")
+    flow: Flow = Field(0.0, description="of it while the tool works, e.g. '6 L/min'")
+    tank: Volume | None = Field(None, gt=0, description="of it on board")
+    power: Power = Field(0.0, description="from the battery, on average")
+    battery: Energy | None = Field(None, gt=0, description="of a full charge")
+
+
 MobilityModel = Annotated[DiffDriveModel | GantryModel | BoomModel | ArmModel, Field(discriminator="kind")]
 
 
@@ -102,6 +128,7 @@ class RobotModel(Model):
     tool: ToolModel
     mobility: MobilityModel
     canvas: CanvasModel | None = None
+    supplies: SuppliesModel | None = None
     sources: dict[str, str] = Field(default_factory=dict, description="where each number comes from")
 
 
@@ -115,7 +142,9 @@ def robot_from(model: RobotModel) -> Robot:
         mobility = kinds[model.mobility.kind](**parts)
     with located("canvas"):
         canvas = None if model.canvas is None else Canvas(**model.canvas.model_dump())
-    return Robot(model.name, model.summary, tool, mobility, canvas, tuple(model.sources.items()))
+    with located("supplies"):
+        supplies = None if model.supplies is None else Supplies(**model.supplies.model_dump(exclude_none=True))
+    return Robot(model.name, model.summary, tool, mobility, canvas, tuple(model.sources.items()), supplies)
 
 
 def _tool_from(model: ToolModel) -> Tool:
@@ -170,8 +199,14 @@ def robot_model(robot: Robot) -> RobotModel:
         ),
         mobility=_mobility_model(robot.mobility),
         canvas=None if canvas is None else CanvasModel(width=canvas.width, height=canvas.height, margin=canvas.margin),
+        supplies=None if robot.supplies is None else _supplies_model(robot.supplies),
         sources=dict(robot.sources),
     )
+
+
+def _supplies_model(supplies: Supplies) -> SuppliesModel:
+    limits = {name: value for name, value in asdict(supplies).items() if value != math.inf}
+    return SuppliesModel.model_validate(limits)
 
 
 def _mobility_model(mobility: Mobility) -> DiffDriveModel | GantryModel | BoomModel | ArmModel:

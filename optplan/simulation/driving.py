@@ -19,6 +19,7 @@ from optplan.simulation._kernels.route import BODY, FIRST, GEAR, KNOT, KNOT_S, R
 from optplan.simulation.figures import energy_used, figures_of
 from optplan.simulation.options import DriveOptions
 from optplan.simulation.schedule import route_of
+from optplan.simulation.switching import switched
 
 SLICE = 5000
 """Control steps between two looks at the stop rule: some 10 ms."""
@@ -68,7 +69,7 @@ def drive_wheels(
         x, y, away = state[m.TRUE_X], state[m.TRUE_Y], machine.lost
         reason = f"lost the path: at ({x:.2f}, {y:.2f}) m it was more than {away:g} m beside it"
     finished = whole[m.STATUS] == loop.FINISHED
-    return _drive(np.concatenate(numbers), np.concatenate(tools), finished, reason, options, mobility, duration)
+    return _drive(np.concatenate(numbers), np.concatenate(tools), finished, reason, options, robot, trajectory)
 
 
 def _machine(robot: Robot, mobility: DiffDrive, options: DriveOptions) -> Machine:
@@ -143,14 +144,17 @@ def _drive(
     finished: bool,
     reason: str,
     options: DriveOptions,
-    mobility: DiffDrive,
-    planned: float,
+    robot: Robot,
+    trajectory: Trajectory,
 ) -> Drive:
     wheels, accelerations = numbers[:, record.WL : record.WR + 1], numbers[:, record.AL : record.AR + 1]
     time, cross, lag = numbers[:, record.T], numbers[:, record.CROSS], numbers[:, record.LAG]
     energy = None
-    if options.mass is not None:
-        energy = energy_used(wheels, STEP, mobility.wheel_radius, options.mass, options.rolling)
+    if options.mass is not None and isinstance(robot.mobility, DiffDrive):
+        energy = energy_used(wheels, STEP, robot.mobility.wheel_radius, options.mass, options.rolling)
+    missed = None
+    if robot.tool.on_delay > 0 or robot.tool.off_delay > 0:
+        tools, missed = switched(time, lag, trajectory, robot.tool)
     return Drive(
         time=time,
         x=numbers[:, record.PX],
@@ -168,5 +172,5 @@ def _drive(
         finished=bool(finished),
         reason=reason,
         method=options.tracker,
-        figures=figures_of(time, tools, wheels, accelerations, cross, lag, planned, energy),
+        figures=figures_of(time, tools, wheels, accelerations, cross, lag, trajectory.duration, energy, missed),
     )

@@ -21,8 +21,10 @@ def figures_of(
     lag: FloatArray,
     planned: float,
     energy: float | None,
+    missed: float | None = None,
 ) -> Figures:
-    """Figures of a drive: its columns, the duration planned (s), and the energy (J) where it is known."""
+    """Figures of a drive: its columns, the duration planned (s), and, where they are known, the energy (J) and by how
+    much marks begin or end elsewhere than planned (m)."""
     down = tool != RAISED
     everywhere = np.ones(len(time), dtype=np.bool_)
     made = [
@@ -39,6 +41,8 @@ def figures_of(
     ]
     if energy is not None:
         made.append(("energy", energy, "J"))
+    if missed is not None:
+        made.append(("ends of marks, greatest error", missed, "m"))
     return tuple(made)
 
 

@@ -104,3 +104,29 @@ def test_odd_shapes_are_measured_without_a_word(cover: Cover, driven: bool) -> N
     report = verify(plan_of(PLOTTER, path, cover))
     assert all(math.isfinite(value) for _, value, _ in report.figures)
     assert report.ok == (driven or not cover.strokes)
+
+
+def test_what_is_marked_twice_is_overlap() -> None:
+    cross = (Stroke("a", np.array([[-1.0, 0], [1, 0]])), Stroke("b", np.array([[0.0, -1], [0, 1]])))
+    report = verify(drawn(Cover(cross)))
+    assert report.figure("overlap area") == pytest.approx(0.1 * 0.1, rel=1e-6)
+    spot = next(check.place for check in report.checks if check.name == "overlap")
+    assert spot == pytest.approx((0, 0), abs=0.05)
+    apart = (cross[0], Stroke("c", np.array([[-1.0, 2], [1, 2]])))
+    assert verify(drawn(Cover(apart))).figure("overlap area") == pytest.approx(0, abs=1e-12)
+
+
+def test_mean_deviation_and_the_share_that_is_near() -> None:
+    # a metre exactly on the line, then a bulge of 2 m that leaves it by 8 mm in the middle
+    line = Stroke("a", np.array([[0.0, 0], [3, 0]]))
+    pen = Pen(np.zeros(2))
+    pen.go((1.0, 0), tool=1, stroke=0)
+    pen.go((2.0, 0.008), tool=1, stroke=0)
+    pen.go((3.0, 0), tool=1, stroke=0)
+    report = verify(plan_of(PLOTTER, pen.path, Cover((line,))))
+    assert report.figure("mean deviation") == pytest.approx(2 / 3 * 0.004, rel=1e-3)
+    # within 5 mm: the first metre, and of both slopes all up to five eighths
+    assert report.figure("within 5 mm") == pytest.approx((1 + 2 * 5 / 8) / 3, rel=1e-3)
+    clean = verify(drawn(Cover((line,))))
+    assert clean.figure("mean deviation") == pytest.approx(0, abs=1e-9)
+    assert clean.figure("within 5 mm") == 1
