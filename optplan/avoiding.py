@@ -8,19 +8,29 @@ from dataclasses import replace
 import numpy as np
 
 from optplan.connectors.families import family_of
-from optplan.connectors.finished import Marks, connector_lines
+from optplan.connectors.finished import Marks, connector_lines, stroke_lines
 from optplan.connectors.padding import padded
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.options import Options
 from optplan.domain.ordering import MatrixCosts, Ordering, OrderingProblem, Status
 from optplan.domain.progress import Progress, ProgressCallback
 from optplan.domain.result import Cover
-from optplan.domain.robot import Robot
+from optplan.domain.robot import DiffDrive, Robot
 from optplan.domain.stop import RunningStop, StopRule
 from optplan.domain.stroke import Traversals
 from optplan.ordering import solve
 from optplan.ordering.arrays import DENSE_NODES, dense_costs
+from optplan.ordering.history import History, annealed
 
+MOST = 40_000_000
+"""Numbers that the table of what arcs meet may hold: 320 MB."""
+NEAREST, ALIKE = 100, 20
+"""Arcs from each node that are offered where finished work is avoided, and how many of them to one stroke."""
+PART = 500
+"""Arcs looked at between two looks at the clock."""
+COOLINGS, ENDLESS = 6, 10_000
+"""How often it is annealed without and with a time limit."""
+TWIN = 1e-6
 ROUNDS = 30
 """Most times that it is solved again."""
 EACH = 40
@@ -40,7 +50,10 @@ def avoid_finished(
     clock: RunningStop,
     progress: ProgressCallback,
 ) -> Ordering:
-    """An order that trades metres between strokes for metres over finished work.
+    """An order that trades metres between strokes for metres over finished work: of the wheels, where there are some.
+
+    Small problems of robots on wheels are annealed with exactly these costs; see `_annealed`. What follows is for other
+    robots, for large problems and for such with enforced connections.
 
     Sought is the least cost + weight x metres over finished work. Connectors that cross finished work become dearer by
     what they cross, with other ways between the same two strokes (by the mean of what was added before and what they
@@ -63,6 +76,9 @@ def avoid_finished(
     weight = options.order.avoid / (family.pace.numbers[2] if family.pace is not None else 1.0)
     entry, leave = padded(ways, options)
     ways = replace(ways, entry=entry, exit=leave)
+    wheeled = isinstance(robot.mobility, DiffDrive)
+    if wheeled and len(problem.enforced) == 0 and problem.nodes**2 * count <= MOST:
+        return _annealed(found, problem, ways, cover, robot, options, weight, clock, progress)
     marks, stroke = Marks(cover.strokes, robot), problem.cluster
     costs = dense_costs(problem)
     extra = np.zeros_like(costs)
@@ -103,3 +119,91 @@ def avoid_finished(
     message = f"{found.message}; over finished work {best_over:.3g} m instead of {before:.3g} m"
     status = found.status if cost <= found.cost else Status.FEASIBLE
     return replace(found, nodes=best, cost=cost, status=status, message=message.removeprefix("; "))
+
+
+def _annealed(
+    found: Ordering,
+    problem: OrderingProblem,
+    ways: Traversals,
+    cover: Cover,
+    robot: Robot,
+    options: Options,
+    weight: float,
+    clock: RunningStop,
+    progress: ProgressCallback,
+) -> Ordering:
+    """The order annealed with what is met of finished work by connectors and by strokes, each when it is driven.
+
+    What arcs meet is looked up in a table, so only the `NEAREST` arcs from each node are offered, at most `ALIKE` of
+    them to one stroke, besides those of the order found first.
+    """
+    family = family_of(robot, options)
+    marks, stroke = Marks(cover.strokes, robot), problem.cluster
+    assert isinstance(robot.mobility, DiffDrive)
+    aside = robot.mobility.track / 2
+    costs = dense_costs(problem)
+    offered = np.full_like(costs, np.inf)
+    apart = stroke[:, None] != stroke[None, :]
+    usable = np.where(apart, costs, np.inf)
+    near = [_nearest(row, stroke) for row in usable]
+    tails, heads = np.repeat(np.arange(len(costs)), [len(row) for row in near]), np.concatenate(near)
+    tails, heads = np.append(tails, found.nodes[:-1]), np.append(heads, found.nodes[1:])
+    keep = np.isfinite(usable[tails, heads])
+    tails, heads = np.unique(np.column_stack([tails, heads])[keep], axis=0).T
+    offered[tails, heads] = costs[tails, heads]
+    on_arc = np.zeros((*costs.shape, len(cover.strokes)))
+    for begin in range(0, len(tails), PART):
+        part = slice(begin, begin + PART)
+        lines = connector_lines(ways.exit[tails[part]], ways.entry[heads[part]], family, aside)
+        on_arc[tails[part], heads[part]] = marks.table(lines)
+        progress(Progress("order", begin / len(tails), message="ways over finished work"))
+        if clock.reason() is not None:
+            return replace(
+                found, message=f"{found.message}; there was no time to avoid finished work".removeprefix("; ")
+            )
+    on_node = marks.table(stroke_lines(ways, cover, robot, options, aside))
+    on_node[np.arange(len(stroke)), stroke] = 0.0
+    start, end = (side if len(side) else np.zeros(len(stroke)) for side in (problem.start_costs, problem.end_costs))
+    history = History(stroke, offered, start, end, on_node, on_arc, problem.precedence)
+
+    def proceed(share: float) -> bool:
+        progress(Progress("order", share, found.cost, found.bound, message="avoiding finished work"))
+        return clock.reason() is None
+
+    limited = clock.rule.iterations is not None or math.isfinite(clock.rule.seconds)
+    coolings = COOLINGS if not limited or clock.rule.iterations is not None else ENDLESS
+    best = annealed(history, _twins(ways), found.nodes, weight, options.order.seed, proceed, coolings)
+    before, after = (history.value(nodes, 1.0) - history.value(nodes, 0.0) for nodes in (found.nodes, best))
+    cost = problem.cost_of(best)
+    message = f"{found.message}; wheels over finished work {after:.3g} m instead of {before:.3g} m"
+    status = found.status if cost <= found.cost else Status.FEASIBLE
+    return replace(found, nodes=best, cost=cost, status=status, message=message.removeprefix("; "))
+
+
+def _nearest(row: FloatArray, stroke: IntArray) -> IntArray:
+    """Heads of the cheapest arcs in a row of costs (n,), few of them to any one stroke."""
+    order = np.argsort(row, kind="stable")
+    own = stroke[order]
+    # how many of the same stroke come before each
+    by = np.argsort(own, kind="stable")
+    first = np.searchsorted(own[by], own[by])
+    rank = np.empty(len(order), dtype=np.int64)
+    rank[by] = np.arange(len(order)) - first
+    return order[rank < ALIKE][:NEAREST]
+
+
+def _twins(ways: Traversals) -> IntArray:
+    """The way (n,) that drives the same stroke the other way round, -1 where there is none."""
+    twins = np.full(len(ways), -1, dtype=np.int64)
+    for k in range(len(ways)):
+        turned = ways.exit[k, :2], ways.exit[k, 3] + math.pi
+        own = np.flatnonzero(ways.stroke == ways.stroke[k])
+        apart = np.abs(ways.entry[own, :2] - turned[0]).max(axis=1)
+        bent = np.abs(np.sin((ways.entry[own, 3] - turned[1]) / 2))
+        fits = own[(apart < TWIN) & (bent < TWIN)]
+        if len(fits) == 0:  # beside the line, the other way round is somewhere else
+            fits = own[(ways.reverse[own] != ways.reverse[k]) & (ways.entry_vertex[own] != ways.entry_vertex[k])]
+            ring = own[(ways.reverse[own] != ways.reverse[k]) & (ways.entry_vertex[own] == ways.entry_vertex[k])]
+            fits = ring if len(own) > 2 else fits
+        twins[k] = fits[0] if len(fits) else -1
+    return twins

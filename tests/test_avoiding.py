@@ -71,3 +71,34 @@ def test_less_is_driven_over_finished_work_when_asked(name: str) -> None:
 def test_bad_weights(weight: float) -> None:
     with pytest.raises(InputError, match="avoid"):
         OrderOptions(avoid=weight)
+
+
+def test_wheels_are_kept_off_wet_lines() -> None:
+    """One end of a football pitch: what the order reckons with is what the judge measures."""
+    import numpy as np
+
+    from optplan.domain.job import Field, FieldSegment
+
+    ends = [
+        (0, 0, 0, 40),
+        (0, 4, 16, 4),
+        (16, 4, 16, 36),
+        (16, 36, 0, 36),
+        (0, 12, 5, 12),
+        (5, 12, 5, 28),
+        (5, 28, 0, 28),
+    ]
+    lines = [FieldSegment(f"l{k}", np.array(line[:2], float), np.array(line[2:], float)) for k, line in enumerate(ends)]
+    field = Field("x", tuple(lines))
+    found = {}
+    for weight in (0.0, 10.0):
+        order = OrderOptions(metric="cc", iterations=2000, avoid=weight)
+        plan = op.plan(field, "line-marker", Options(cover=op.CoverOptions(cut=False), order=order))
+        assert plan.report is not None
+        assert plan.report.ok
+        assert plan.ordering is not None
+        wheels = next(check.value for check in plan.report.checks if check.name == "wheels over finished work")
+        found[weight] = plan.ordering.cost + 10 * wheels
+        if weight:
+            assert f"{wheels:.3g} m instead" in plan.ordering.message
+    assert found[10.0] < found[0.0]

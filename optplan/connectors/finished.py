@@ -12,11 +12,15 @@ import numpy as np
 
 from optplan.connectors.driving import connector
 from optplan.connectors.families import Family
+from optplan.connectors.ways import driven
 from optplan.domain.arrays import FloatArray, IntArray
+from optplan.domain.options import Options
 from optplan.domain.path import RAISED
+from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
-from optplan.domain.stroke import Stroke
+from optplan.domain.stroke import Stroke, Traversals
 from optplan.geometry.clothoids import clothoid_displacement
+from optplan.geometry.rounding import Pieces
 
 BIT = 0.2
 """rad that a connector turns between two points of the line that stands for it."""
@@ -42,6 +46,19 @@ class Marks:
         self.width = np.array([widths[stroke.tool] if stroke.tool > RAISED else 0.0 for stroke in strokes])
         self.shapes = shapely.buffer(np.array(lines, dtype=object), self.width / 2)
         self.tree = shapely.STRtree(self.shapes)
+
+    def table(self, lines: Any) -> FloatArray:
+        """Metres (k, m) of each line that lie on each mark, whenever it is made."""
+        import shapely
+
+        found = np.zeros((len(lines), len(self.shapes)))
+        line, mark = self.tree.query(lines, predicate="intersects")
+        use = self.width[mark] > 0
+        line, mark = line[use], mark[use]
+        found[line, mark] = shapely.length(
+            shapely.intersection(np.asarray(lines, dtype=object)[line], self.shapes[mark])
+        )
+        return found
 
     def metres(self, lines: Any, source: IntArray, rank: IntArray, time: IntArray) -> FloatArray:
         """Metres (k,) of each line that lie on marks made before it is driven.
@@ -77,26 +94,74 @@ class Marks:
         return found
 
 
-def connector_lines(exits: FloatArray, entries: FloatArray, family: Family) -> Any:
-    """Shapely lines (k,) that connectors between states (k, 5) x, y, z, heading, curvature follow."""
+def connector_lines(exits: FloatArray, entries: FloatArray, family: Family, aside: float = 0.0) -> Any:
+    """Shapely lines (k,) that connectors between states (k, 5) x, y, z, heading, curvature follow.
+
+    With `aside` (m), those of wheels so far to both sides of them, as one shape each.
+    """
     import shapely
 
-    if not family.headings:
+    if not family.headings and aside == 0:
         return shapely.linestrings(np.stack([exits[:, :2], entries[:, :2]], axis=1))
-    made = []
-    for here, there in zip(exits[:, [0, 1, 3, 4]], entries[:, [0, 1, 3, 4]], strict=True):
-        pieces = connector(here, there, family, turns=False).pieces
-        points = [here[None, :2]]
-        for k in range(len(pieces.length)):
-            length, bend = pieces.length[k], pieces.curvature[k]
-            turned = length * max(abs(bend), abs(bend + pieces.sharpness[k] * length))
-            along = length * np.linspace(0, 1, 1 + max(1, int(np.ceil(turned / BIT))))[1:]
-            heading, curvature, sharpness = (
-                np.full(len(along), column[k]) for column in (pieces.heading, pieces.curvature, pieces.sharpness)
-            )
-            points.append(
-                pieces.start[k] + np.column_stack(clothoid_displacement(heading, curvature, sharpness, along))
-            )
-        line = np.concatenate([*points, there[None, :2]])
-        made.append(shapely.LineString(line))
-    return np.array(made, dtype=object)
+    flat = [0, 1, 3, 4]
+    pieces = [
+        connector(here, there, family, turns=False).pieces
+        for here, there in zip(exits[:, flat], entries[:, flat], strict=True)
+    ]
+    return tracks(pieces, exits[:, flat], entries[:, flat], aside)
+
+
+def tracks(ways: Sequence[Pieces], first: FloatArray, last: FloatArray, aside: float) -> Any:
+    """Shapely lines (k,) of pieces from states to states (k, 4), or those `aside` (m) on both sides, as one shape."""
+    import shapely
+
+    owner = np.repeat(np.arange(len(ways)), [len(way.length) for way in ways])
+    start, heading, curvature, length, _, sharpness = (np.concatenate(column) for column in zip(*ways, strict=True))
+    turned = length * np.maximum(np.abs(curvature), np.abs(curvature + sharpness * length))
+    count = np.where(length > 0, np.maximum(1, np.ceil(turned / BIT)), 0).astype(np.int64)
+    piece = np.repeat(np.arange(len(owner)), count)
+    number = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count) + 1
+    along = length[piece] * number / count[piece]
+    angle, bend, change = heading[piece], curvature[piece], sharpness[piece]
+    points = start[piece] + np.column_stack(clothoid_displacement(angle, bend, change, along))
+    angle = angle + along * (bend + change * along / 2)
+    # the states themselves come first and last
+    line = np.concatenate([np.arange(len(ways)), owner[piece], np.arange(len(ways))])
+    order = np.argsort(line, kind="stable")
+    points = np.concatenate([first[:, :2], points, last[:, :2]])[order]
+    angle = np.concatenate([first[:, 2], angle, last[:, 2]])[order]
+    line = line[order]
+    if aside == 0:
+        return shapely.linestrings(points, indices=line)
+    left = aside * np.column_stack([-np.sin(angle), np.cos(angle)])
+    sides = [shapely.linestrings(points + side * left, indices=line) for side in (1, -1)]
+    return shapely.multilinestrings(np.column_stack(sides).ravel(), indices=np.repeat(np.arange(len(ways)), 2))
+
+
+def stroke_lines(ways: Traversals, cover: Cover, robot: Robot, options: Options, aside: float) -> Any:
+    """Shapely lines (n,) that the robot follows along each way of driving a stroke, or `aside` (m) its wheels."""
+    made: list[Pieces] = []
+    for k in range(len(ways)):
+        way = ways[k]
+        stroke = cover.strokes[way.stroke]
+        if stroke.is_stop:
+            made.append(Pieces(np.zeros((0, 2)), *(np.zeros(0) for _ in range(5))))
+        else:
+            made.append(driven(stroke, way.entry_vertex, way.reverse, robot, options))
+    flat = [0, 1, 3, 4]
+    first, last = ways.entry[:, flat].copy(), ways.exit[:, flat].copy()
+    for k, pieces in enumerate(made):  # with padding, a way begins before its stroke
+        if len(pieces.length):
+            first[k, :3] = [*pieces.start[0], pieces.heading[0]]
+            last[k] = _behind(pieces)
+    return tracks(made, first, last, aside)
+
+
+def _behind(pieces: Pieces) -> FloatArray:
+    """The state (4,) at the end of pieces."""
+    last = [column[-1:] for column in (pieces.heading, pieces.curvature, pieces.sharpness, pieces.length)]
+    dx, dy = clothoid_displacement(*last)
+    heading, curvature, sharpness, length = (float(column[0]) for column in last)
+    turned = length * (curvature + sharpness * length / 2)
+    x, y = pieces.start[-1]
+    return np.array([x + dx[0], y + dy[0], heading + turned, curvature + sharpness * length])

@@ -12,6 +12,7 @@ from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.options import Options
 from optplan.domain.robot import CurvatureLimits, DiffDrive, Robot, ToolPlace
+from optplan.geometry.cc import shared_tables
 from optplan.geometry.curves import Curve
 from optplan.geometry.threads import by_rows
 
@@ -96,10 +97,9 @@ class Pace(NamedTuple):
         threads: int | None,
     ) -> None:
         from optplan.connectors._kernels.times import times
-        from optplan.geometry._kernels.cc import tables
 
         kappa, s = limits.curvature, limits.sharpness / limits.curvature**2
-        shared, pace = tables(s), np.array(self.numbers)
+        shared, pace = shared_tables(s), np.array(self.numbers)
         first, last = (np.ascontiguousarray(states, dtype=np.float64) for states in (exits, entries))
         before, after = self.stroke_speeds(first[:, 3]), self.stroke_speeds(last[:, 3])
 

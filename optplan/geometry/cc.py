@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -65,7 +66,7 @@ def cc_path(start: FloatArray, end: FloatArray, curvature: float, sharpness: flo
     full = checked(start, end, curvature, sharpness, family, 1)
     first, last = (np.array(state, dtype=np.float64) for state in (start, end))
     s = sharpness / curvature / curvature
-    table, middles, turns = kernels.tables(s)
+    table, middles, turns = shared_tables(s)
     words, query, pieces = np.empty((kernels.ROWS, kernels.COLUMNS)), np.empty(5), np.zeros((12, 3))
     length = kernels.solve(first, last, curvature, s, full, table, middles, turns, words, query)
     if length == 0.0:
@@ -110,7 +111,7 @@ def cc_lengths(
         raise InputError(f"{len(starts)} starts and {len(ends)} ends; expected as many of both")
     first, last = (np.ascontiguousarray(states, dtype=np.float64) for states in (starts, ends))
     s = sharpness / curvature / curvature
-    shared = kernels.tables(s)
+    shared = shared_tables(s)
     out = np.empty(len(first))
     for i in range(0, len(first), SLICE):
         part = slice(i, i + SLICE)
@@ -136,7 +137,7 @@ def cc_matrix(
     full = checked(exits, entries, curvature, sharpness, family, 2)
     first, last = (np.ascontiguousarray(states, dtype=np.float64) for states in (exits, entries))
     s = sharpness / curvature / curvature
-    shared = kernels.tables(s)
+    shared = shared_tables(s)
     out = np.empty((len(first), len(last)))
     rows = max(1, SLICE // max(len(last), 1))
 
@@ -157,6 +158,15 @@ def cc_lower_bounds(starts: FloatArray, ends: FloatArray, curvature: float) -> F
     if not (math.isfinite(curvature) and curvature > 0):
         raise InputError(f"the curvature limit is {curvature} 1/m; expected a finite number above 0")
     return dubins_lengths(np.asarray(starts)[:, :3], np.asarray(ends)[:, :3], 1.0 / curvature)
+
+
+@lru_cache(maxsize=32)
+def shared_tables(s: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What all queries share whose limits have the ratio s = sigma_max / kappa_max^2."""
+    from optplan.geometry._kernels.cc import tables
+
+    made: tuple[FloatArray, FloatArray, FloatArray] = tables(s)
+    return made
 
 
 def _name(row: int, word: FloatArray) -> str:
