@@ -11,7 +11,7 @@ from optplan.avoiding import avoid_finished
 from optplan.connectors.driving import connect
 from optplan.connectors.families import family_of
 from optplan.coverage import cover
-from optplan.coverage.field import with_areas
+from optplan.coverage.field import with_areas, with_metric
 from optplan.detours import with_detours
 from optplan.domain.errors import InputError
 from optplan.domain.job import Field, Job
@@ -103,6 +103,8 @@ def _cover(before: Plan, progress: ProgressCallback, _: StopRule | None) -> Plan
     if isinstance(before.job, Field):
         options = with_areas(before.job, before.robot, options)
     made = cover(before.job, before.robot, options, progress)
+    if isinstance(before.job, Field):
+        options = with_metric(made, before.robot, options)
     return Plan(before.job, before.robot, options, made)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from optplan.cli import output
+from optplan.cli.fields import field_command
 from optplan.cli.settings import (
     Animate,
     Areas,
@@ -77,8 +78,8 @@ from optplan.domain.errors import InputError
 if TYPE_CHECKING:
     from optplan.domain.result import Plan
 
-USUAL_ROBOT = "beach-rake"
-DEMOS = {"drawing": "drawings/lion"}
+USUAL_ROBOTS = {"Drawing": "beach-rake", "Field": "line-marker", "Facade": "boom-washer", "Surface": "arm-grinder"}
+DEMOS = {"drawing": "drawings/lion", "field": "fields/football-pitch"}
 
 app = typer.Typer(
     name="optplan",
@@ -181,9 +182,9 @@ def plan_command(
     base = read_config(config)
     options = settings_of(base, flags)
     job = shipped_or_file(job)
-    chosen = robot or base.get("robot") or USUAL_ROBOT
+    chosen = robot or base.get("robot")
     if print_config:
-        print(config_text(options, chosen), end="")
+        print(config_text(options, chosen or USUAL_ROBOTS["Drawing"]), end="")
         return
     folder = out or Path(f"{job.stem}-plan")
     _plan_and_write(job, chosen, options, folder, export or [], force, quiet, json, close_gap, entry)
@@ -191,7 +192,7 @@ def plan_command(
 
 @app.command()
 def demo(
-    kind: Annotated[str, typer.Argument(help="drawing, or the name of a shipped instance.")] = "drawing",
+    kind: Annotated[str, typer.Argument(help="drawing, field, or the name of a shipped instance.")] = "drawing",
     robot: RobotName = None,
     out: Annotated[Path | None, typer.Option("--output", "-o", help="Folder; default: optplan-demo.")] = None,
     force: Force = False,
@@ -209,12 +210,12 @@ def demo(
             number += 1
             folder = Path(f"optplan-demo-{number}")
     options = settings_of({}, {})
-    _plan_and_write(file, robot or USUAL_ROBOT, options, folder, ["csv", "txt"], force, quiet, json)
+    _plan_and_write(file, robot, options, folder, ["csv", "txt"], force, quiet, json)
 
 
 def _plan_and_write(
     job: Path,
-    robot: str,
+    robot: str | None,
     options: Any,
     folder: Path,
     export: list[str],
@@ -240,10 +241,10 @@ def _plan_and_write(
     for target in targets:  # find out before the work, not after it
         if target.exists() and not force:
             raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
-    machine = op.load_robot(robot)
     order = options.order
+    read = with_entries(op.read(job, close_gap=close_gap), entry)
+    machine = op.load_robot(robot or USUAL_ROBOTS[type(read).__name__])
     with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
-        read = with_entries(op.read(job, close_gap=close_gap), entry)
         rule = StopRule(
             seconds=math.inf if order.seconds is None else order.seconds,
             iterations=order.iterations,
@@ -348,10 +349,24 @@ def _load(file: Path, flags: dict[str, Any]) -> Plan:
     from optplan.domain.result import Plan
 
     robot = flags.get("robot")
-    if file.suffix.lower() in (".svg", ".svgz") and "robot" in flags:
-        return Plan(op.read(file), op.load_robot(robot or USUAL_ROBOT), Options())
+    if "robot" in flags and _is_job(file):
+        job = op.read(file)
+        return Plan(job, op.load_robot(robot or USUAL_ROBOTS[type(job).__name__]), Options())
     plan = op.load_plan(file)
     return plan if robot is None else replace(plan, robot=op.load_robot(robot))
+
+
+def _is_job(file: Path) -> bool:
+    """Whether a file holds a job rather than a plan."""
+    if file.suffix.lower() in (".svg", ".svgz"):
+        return True
+    if file.suffix.lower() != ".json" or not file.is_file():
+        return False
+    from optplan.schema.base import parse_json
+    from optplan.schema.files import read_bytes
+
+    data = parse_json(read_bytes(file), str(file))
+    return isinstance(data, dict) and "kind" in data and "job" not in data
 
 
 @app.command()
@@ -458,7 +473,7 @@ def compare_command(
     """Compare solvers: instances x solvers x seeds x budgets, as a table and CSV."""
     from optplan.cli.ordering import compare_and_print
 
-    compare_and_print(instances, solver, seed, budget, robot or USUAL_ROBOT, out, force, quiet, json)
+    compare_and_print(instances, solver, seed, budget, robot or USUAL_ROBOTS["Drawing"], out, force, quiet, json)
 
 
 @app.command()
@@ -705,6 +720,9 @@ def instances(json: Json = False) -> None:
     else:
         output.print_table(("instance", "file"), known)
         print("drawings: optplan plan; ordering: optplan order; washing: optplan compare, which takes them all")
+
+
+app.command("field")(field_command)
 
 
 @app.command()

@@ -31,6 +31,8 @@ SAG = 1e-4
 """Between an arc and the chords that stand for it, m."""
 ARC_POINTS = 16
 """Points of a circle are a multiple of this: so many entries are evenly spread."""
+MOST_TIMED = 200
+"""Most strokes whose order is chosen by time, unless that is asked for: it takes several times as long as metres."""
 MAX_STROKES = 5000
 """Most strokes of a field: logos and all."""
 
@@ -94,6 +96,16 @@ def with_areas(job: Field, robot: Robot, options: Options) -> Options:
         clearance = robot.mobility.track / 2
     kept = asked.keep_out + tuple(ring for ring in rings if ring not in asked.keep_out)
     return replace(options, connect=replace(asked, keep_out=kept, keep_in=room, clearance=clearance))
+
+
+def with_metric(made: Cover, robot: Robot, options: Options) -> Options:
+    """Options that name what "auto" means for a field: the least time, or curvature that is continuous at least, for a
+    robot that cannot turn on the spot."""
+    if options.order.metric != "auto" or not robot.heading_counts:
+        return options
+    timed = options.time.constant_speed is None and options.connect.padding == 0 and not options.connect.reversing
+    metric = "time" if timed and len(made.strokes) <= MOST_TIMED else "cc"
+    return replace(options, order=replace(options.order, metric=metric))
 
 
 def _refuse_obstructed(strokes: list[Stroke], job: Field, options: Options) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from optplan.domain.arrays import BoolArray, FloatArray
 from optplan.domain.errors import InputError
+from optplan.domain.job import Field
 from optplan.domain.path import RAISED, Path
 from optplan.domain.result import Plan
 from optplan.domain.robot import MIDDLE, DiffDrive, ToolPlace
@@ -41,6 +42,7 @@ class _Colours(NamedTuple):
 
 
 _SAND = _Colours("#ecdcb4", "#8a6a3f", "#1f6f8b", "#fff6dd", "#3b2f1e", "#b0367a")
+_GRASS = _Colours("#4f8a3c", "#ffffff", "#ffd166", "#1d3b14", "#102408", "#ff9f6b")
 _PAPER = _Colours("#ffffff", "#1c2a39", "#d1495b", "#ffffff", "#1c2a39", "#7a3fb0")
 
 
@@ -61,6 +63,8 @@ def figure(plan: Plan) -> Figure:
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     small = size.max() < 1
     colours = _SAND if isinstance(plan.robot.mobility, DiffDrive) else _PAPER
+    if isinstance(plan.job, Field):
+        colours = _GRASS
     axes.set_facecolor(colours.ground)
     axes.tick_params(labelsize=8, color="#999999")
     for spine in axes.spines.values():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path as FilePath
 from typing import Annotated, Literal
 
 import numpy as np
@@ -25,6 +26,7 @@ from optplan.domain.job import (
     turned,
 )
 from optplan.schema.base import VERSION, Angle, Length, Model, Point, Point3, Whole
+from optplan.schema.files import write_atomically
 from optplan.schema.options import FillModel
 
 Colour = Annotated[str, Entry(pattern="^#[0-9a-f]{6}$")]
@@ -217,6 +219,12 @@ def job_model(job: Job) -> DrawingModel | FieldModel | FacadeModel | SurfaceMode
                     "notes": note_models(job.notes),
                 }
             )
+
+
+def save_job(job: Job, file: str | FilePath, *, overwrite: bool = False) -> None:
+    """Write a job as JSON, as a whole or not at all. Raises InputError: it exists, or it cannot be written."""
+    text = job_model(job).model_dump_json(exclude_none=True, indent=1) + "\n"
+    write_atomically(FilePath(file), text, overwrite=overwrite)
 
 
 def _field_model(job: Field) -> FieldModel:
