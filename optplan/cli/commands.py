@@ -727,17 +727,19 @@ app.command("field")(field_command)
 
 @app.command()
 def schema(
-    of: Annotated[str, typer.Argument(help="plan, job, robot or options.")] = "plan",
+    of: Annotated[str, typer.Argument(help="plan, job, robot, options or messages.")] = "plan",
 ) -> None:
     """JSON Schema of the files that optplan reads and writes."""
     from pydantic import TypeAdapter
 
     from optplan.schema.jobs import JobModel
+    from optplan.schema.messages import TrajectoryMessage
     from optplan.schema.options import OptionsModel
     from optplan.schema.plans import PlanModel
     from optplan.schema.robots import RobotModel
 
     known: dict[str, Any] = {"plan": PlanModel, "job": JobModel, "robot": RobotModel, "options": OptionsModel}
+    known["messages"] = TrajectoryMessage
     if of not in known:
         raise InputError(f"there is no schema of {of!r}; expected one of {', '.join(known)}")
     output.print_json(TypeAdapter(known[of]).json_schema())

@@ -28,7 +28,7 @@ class Format:
     name: str
     summary: str
     suffix: str
-    write: Callable[[Plan, float], str]
+    write: Callable[[Plan, float], str | bytes]
 
 
 def _csv(plan: Plan, spacing: float) -> str:
@@ -55,12 +55,59 @@ def _tsplib(plan: Plan, _: float) -> str:
     return tsplib_text(plan)
 
 
+def _messages(style: str) -> Callable[[Plan, float], str]:
+    def write(plan: Plan, _: float) -> str:
+        from optplan.exports.messages import message_text
+
+        return message_text(plan, style)
+
+    return write
+
+
+def _geojson(plan: Plan, _: float) -> str:
+    from optplan.exports.geojson import geojson_text
+
+    return geojson_text(plan)
+
+
+def _schedule(plan: Plan, _: float) -> str:
+    from optplan.exports.schedule import schedule_text
+
+    return schedule_text(plan)
+
+
+def _pdf(plan: Plan, _: float) -> bytes:
+    from io import BytesIO
+
+    from optplan.plot.sheet import sheet
+
+    page = BytesIO()
+    sheet(plan).savefig(page, format="pdf", metadata={"CreationDate": None})
+    return page.getvalue()
+
+
 FORMATS = {
     form.name: form
     for form in (
         Format("csv", "equally spaced points with time, speed, heading, curvature and tool state", ".csv", _csv),
         Format("txt", "lines 'x y tool', y down, a blank line at every turn on the spot", ".txt", _txt),
         Format("tool", "commands to the tool, ahead of each change by its delay", ".tool.csv", _tool),
+        Format("schedule", "time table: what is marked when, and what lies between", ".schedule.csv", _schedule),
+        Format(
+            "messages",
+            "trajectory message of marking robots (JSON): lines and arcs",
+            ".messages.json",
+            _messages("arcs"),
+        ),
+        Format(
+            "messages-lines",
+            "the same with lines for whatever changes its curvature",
+            ".lines.json",
+            _messages("lines"),
+        ),
+        Format("messages-clothoids", "the same with clothoids as they are", ".clothoids.json", _messages("clothoids")),
+        Format("geojson", "marks and ways on the map, for fields with an anchor", ".geojson", _geojson),
+        Format("pdf", "a job sheet of one page", ".pdf", _pdf),
         Format("tsplib", "the ordering problem of its strokes, for other solvers (GTSP or PCGTSP)", ".gtsp", _tsplib),
     )
 }

@@ -249,7 +249,8 @@ def _draw_places(axes: Axes, plan: Plan, colours: _Colours) -> None:
             place[0], place[1], marker, ms=8, color=colour, mec="white", mew=1.2, label=label, zorder=7, ls="none"
         )
     if plan.path is not None:
-        axes.plot([], [], "-", color=colours.work, lw=4, label="tool down")
+        shown = "#b8b8b8" if colours.work == "#ffffff" else colours.work  # on white, white is nothing
+        axes.plot([], [], "-", color=shown, lw=4, label="tool down")
         axes.plot([], [], "-", color=colours.travel, lw=1, label="tool up")
         if plan.robot.offset.aside:
             axes.plot([], [], "-", color=colours.text, lw=0.6, label="robot, tool down")

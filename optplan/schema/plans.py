@@ -259,7 +259,7 @@ def _check_references(plan: Plan) -> None:
             raise InputError(f"{name} names {wrong[0]}; expected {least}..{count - 1}")
     if plan.visits is not None and plan.cover is not None:
         for stroke, vertex in zip(plan.visits.stroke.tolist(), plan.visits.entry_vertex.tolist(), strict=True):
-            if not (stroke >= 0 and 0 <= vertex < len(plan.cover.strokes[stroke].points)):
+            if not (stroke >= 0 and 0 <= vertex < _entries(plan.cover.strokes[stroke])):
                 raise InputError(f"visits enter stroke {stroke} at vertex {vertex}, which it does not have")
 
 
@@ -323,6 +323,11 @@ def _cover_from(model: CoverModel) -> Cover:
         notes_from(model.notes),
         tuple(model.links),
     )
+
+
+def _entries(stroke: Stroke) -> int:
+    """How many vertices, or directions of a spot, there are to enter a stroke."""
+    return stroke.headings if stroke.headings > 1 else len(stroke.points)
 
 
 def _ordering_model(ordering: Ordering) -> OrderingModel:

@@ -1,0 +1,124 @@
+"""Fields moved, aligned, joined; logos; obstacle maps."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+import optplan as op
+from optplan.coverage.field import primitive_of
+from optplan.domain.errors import InputError
+from optplan.domain.job import Field, FieldSegment
+from optplan.jobs.fields import template
+from optplan.jobs.fields.drawn import with_logo
+from optplan.jobs.fields.maps import obstacles
+from optplan.jobs.fields.placing import aligned, anchored, joined, placed
+
+FIELD = template("basketball")
+
+
+def _points(field: Field) -> np.ndarray:
+    parts = [primitive_of(segment) for segment in field.segments if segment.spot == 0]
+    return np.concatenate([part.at(np.linspace(0, part.length, 7)) for part in parts])
+
+
+@given(
+    st.tuples(st.floats(-50, 50), st.floats(-50, 50)),
+    st.floats(-math.pi, math.pi),
+    st.floats(0.1, 10),
+    st.booleans(),
+)
+def test_placing_is_the_similarity_of_every_point(
+    at: tuple[float, float], turn: float, scale: float, mirrored: bool
+) -> None:
+    before, after = _points(FIELD), _points(placed(FIELD, at, turn, scale, mirrored))
+    z = before[:, 0] * (-1 if mirrored else 1) + 1j * before[:, 1]
+    wanted = z * scale * np.exp(1j * turn) + complex(*at)
+    assert after[:, 0] == pytest.approx(wanted.real, abs=1e-9 * (1 + scale) * 100)
+    assert after[:, 1] == pytest.approx(wanted.imag, abs=1e-9 * (1 + scale) * 100)
+
+
+def test_alignment_puts_two_points_where_they_were_measured() -> None:
+    made = aligned(FIELD, ((0, 0), (28, 0)), ((5, 5), (5, 33)))
+    first = next(s for s in made.segments if s.id == "boundary 1")
+    assert first.start == pytest.approx([5, 5])
+    assert first.end == pytest.approx([5, 33])
+    assert not made.notes
+    off = aligned(FIELD, ((0, 0), (28, 0)), ((5, 5), (5, 33.2)))
+    assert "misses by 0.100 m" in off.notes[-1].text
+    stretched = aligned(FIELD, ((0, 0), (28, 0)), ((5, 5), (5, 33.2)), scaled=True)
+    first = next(s for s in stretched.segments if s.id == "boundary 1")
+    assert first.end == pytest.approx([5, 33.2])
+    with pytest.raises(InputError, match="coincide"):
+        aligned(FIELD, ((0, 0), (0, 0)), ((5, 5), (5, 33)))
+
+
+def test_bad_places_are_refused() -> None:
+    for scale in (0.0, -1.0, math.nan):
+        with pytest.raises(InputError, match="scale"):
+            placed(FIELD, scale=scale)
+    with pytest.raises(InputError, match="no place"):
+        anchored(FIELD, 95, 0)
+
+
+def test_joined_fields_are_one_job() -> None:
+    both = joined("two", FIELD, placed(template("tennis"), (40, 0)))
+    assert len(both.segments) == len(FIELD.segments) + len(template("tennis").segments)
+    assert both.line_width is None
+    widths = sorted({segment.width or 0.0 for segment in both.segments})
+    assert widths == pytest.approx([0.05, 0.0508])
+
+
+def test_a_logo_is_lines_and_arcs_close_to_the_drawing(tmp_path: Path) -> None:
+    svg = tmp_path / "logo.svg"
+    svg.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="200" height="100"><circle cx="50" cy="50" r="50"/>'
+        '<path d="M100 0 H200 V100 Z" fill="none" stroke="black"/></svg>'
+    )
+    made = with_logo(Field("x", (FieldSegment("a", np.zeros(2), np.array([1.0, 0])),)), svg, (10, 20), 8.0)
+    logo = [s for s in made.segments if s.id != "a"]
+    points = _points(Field("logo", tuple(logo)))
+    assert points.min(axis=0) == pytest.approx([6, 18], abs=0.02)
+    assert points.max(axis=0) == pytest.approx([14, 22], abs=0.02)
+    arcs = [s for s in logo if s.center is not None]
+    assert arcs
+    assert len(logo) < 12
+    assert all(s.radius == pytest.approx(2, abs=0.05) for s in arcs)
+    # the circle is closed by its arcs
+    assert sum(abs(s.sweep) for s in arcs) == pytest.approx(2 * math.pi, abs=0.1)
+    plan = op.plan(made, "line-marker", op.Options(order=op.OrderOptions(metric="cc")))
+    assert plan.report is not None
+    assert plan.report.ok
+    with pytest.raises(InputError, match="width"):
+        with_logo(made, svg, (0, 0), 0.0)
+
+
+def test_obstacles_of_a_map_lie_where_it_says(tmp_path: Path) -> None:
+    grid = np.full((40, 60), 254, dtype=np.uint8)
+    grid[10:14, 20:30] = 0  # rows count from the top
+    grid[30:32, 5:7] = 205  # unknown
+    Image.fromarray(grid).save(tmp_path / "map.pgm")
+    text = "image: map.pgm\nresolution: 0.5\norigin: [-3.0, 2.0, 0.0]\n"
+    text += "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
+    (tmp_path / "map.yaml").write_text(text)
+    (ring,) = obstacles(tmp_path / "map.yaml")
+    # half a pixel wider all around
+    assert ring.min(axis=0) == pytest.approx([-3 + 9.75, 2 + 12.75])
+    assert ring.max(axis=0) == pytest.approx([-3 + 15.25, 2 + 15.25])
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "image: [", "image: none.pgm\nresolution: 0.5\norigin: [0, 0, 0]", "image: a\nresolution: -1\norigin: [0, 0]",
+     "image: a\nresolution: x\norigin: [0, 0]", "resolution: 1"],
+)  # fmt: skip
+def test_bad_maps_are_refused(text: str, tmp_path: Path) -> None:
+    (tmp_path / "map.yaml").write_text(text)
+    with pytest.raises(InputError):
+        obstacles(tmp_path / "map.yaml")
