@@ -28,6 +28,8 @@ NEAREST, ALIKE = 100, 20
 """Arcs from each node that are offered where finished work is avoided, and how many of them to one stroke."""
 PART = 500
 """Arcs looked at between two looks at the clock."""
+TABLE = 0.4
+"""Share of the time in which these arcs are looked at; farther ones are then left out."""
 COOLINGS, ENDLESS = 6, 10_000
 """How often it is annealed without and with a time limit."""
 TWIN = 1e-6
@@ -146,21 +148,26 @@ def _annealed(
     apart = stroke[:, None] != stroke[None, :]
     usable = np.where(apart, costs, np.inf)
     near = [_nearest(row, stroke) for row in usable]
-    tails, heads = np.repeat(np.arange(len(costs)), [len(row) for row in near]), np.concatenate(near)
-    tails, heads = np.append(tails, found.nodes[:-1]), np.append(heads, found.nodes[1:])
-    keep = np.isfinite(usable[tails, heads])
-    tails, heads = np.unique(np.column_stack([tails, heads])[keep], axis=0).T
-    offered[tails, heads] = costs[tails, heads]
+    tails = np.repeat(np.arange(len(costs)), [len(row) for row in near])
+    heads, rank = np.concatenate(near), np.concatenate([np.arange(len(row)) for row in near])
+    tails, heads = np.append(found.nodes[:-1], tails), np.append(found.nodes[1:], heads)
+    # the order found comes first, then from each node the nearest
+    order = np.argsort(np.append(np.full(len(found.nodes) - 1, -1), rank), kind="stable")
+    order = order[np.isfinite(usable[tails[order], heads[order]])]
+    tails, heads = tails[order], heads[order]
     on_arc = np.zeros((*costs.shape, len(cover.strokes)))
+    until = clock.elapsed + TABLE * clock.remaining
     for begin in range(0, len(tails), PART):
         part = slice(begin, begin + PART)
         lines = connector_lines(ways.exit[tails[part]], ways.entry[heads[part]], family, aside)
         on_arc[tails[part], heads[part]] = marks.table(lines)
+        offered[tails[part], heads[part]] = costs[tails[part], heads[part]]
         progress(Progress("order", begin / len(tails), message="ways over finished work"))
-        if clock.reason() is not None:
-            return replace(
-                found, message=f"{found.message}; there was no time to avoid finished work".removeprefix("; ")
-            )
+        if clock.elapsed > until or clock.reason() is not None:
+            break
+    if clock.reason() is not None:
+        late = f"{found.message}; there was no time to avoid finished work"
+        return replace(found, message=late.removeprefix("; "))
     on_node = marks.table(stroke_lines(ways, cover, robot, options, aside))
     on_node[np.arange(len(stroke)), stroke] = 0.0
     start, end = (side if len(side) else np.zeros(len(stroke)) for side in (problem.start_costs, problem.end_costs))

@@ -209,8 +209,10 @@ def demo(
         while folder.exists():
             number += 1
             folder = Path(f"optplan-demo-{number}")
-    options = settings_of({}, {})
-    _plan_and_write(file, robot, options, folder, ["csv", "txt"], force, quiet, json)
+    field = kind == "field"
+    options = settings_of({}, {"time_limit": "6s", "avoid": 5.0} if field else {})
+    formats = ["csv", "schedule", "messages", "pdf"] if field else ["csv", "txt"]
+    _plan_and_write(file, robot, options, folder, formats, force, quiet, json, film=field)
 
 
 def _plan_and_write(
@@ -224,6 +226,7 @@ def _plan_and_write(
     json: bool,
     close_gap: float | None = None,
     entry: list[str] | None = None,
+    film: bool = False,
 ) -> None:
     import math
 
@@ -236,6 +239,7 @@ def _plan_and_write(
         raise InputError(f"there is no format {unknown[0]!r}; expected one of {', '.join(FORMATS)}", "--export")
     targets = [folder / "plan.json", folder / "picture.png", folder / "picture.svg"]
     targets += [folder / f"plan{FORMATS[name].suffix}" for name in export]
+    targets += [folder / "film.gif"] if film else []
     if folder.exists() and not folder.is_dir():
         raise InputError("is a file; expected a folder for the plan and its pictures", str(folder))
     for target in targets:  # find out before the work, not after it
@@ -255,8 +259,10 @@ def _plan_and_write(
     for picture in targets[1:3]:
         op.draw(plan, picture, overwrite=force)
     if plan.path is not None:
-        for name, target in zip(export, targets[3:], strict=True):
+        for name, target in zip(export, targets[3 : 3 + len(export)], strict=True):
             op.export_plan(plan, name, target, overwrite=force)
+        if film and plan.trajectory is not None:
+            op.animate(plan, targets[-1], overwrite=force)
     written = [str(target) for target in targets if target.exists()]
     exports = {folder / f"plan{kind.suffix}" for kind in FORMATS.values()} - set(targets)
     _tell(plan, written, json, [str(file) for file in sorted(exports) if file.exists()])

@@ -15,7 +15,7 @@ from optplan.domain.arrays import FloatArray
 from optplan.domain.options import Options
 from optplan.domain.path import RAISED, Path
 from optplan.domain.result import Cover
-from optplan.domain.robot import Robot
+from optplan.domain.robot import CurvatureLimits, Robot
 from optplan.domain.stroke import Traversals
 from optplan.geometry.cc import cc_path
 from optplan.geometry.clothoids import clothoid_displacement
@@ -137,11 +137,17 @@ class Connector(NamedTuple):
 
 
 def connector(
-    here: FloatArray, there: FloatArray, family: Family, turns: bool, roads: Roads | None = None
+    here: FloatArray,
+    there: FloatArray,
+    family: Family,
+    turns: bool,
+    roads: Roads | None = None,
+    limits: CurvatureLimits | None = None,
 ) -> Connector:
     """The movement between two states (4,) x, y, heading, curvature.
 
     `turns`: with turns on the spot at both ends. With a road map it keeps out of what is forbidden, if there is a way.
+    `limits`: those of `limits_between`, where they are known.
     """
     if roads is not None:
         way = roads.between(here, there)
@@ -159,7 +165,7 @@ def connector(
         curvatures, lengths = np.array(plain.curvatures), np.array(plain.lengths)
         return Connector(_placed(here, curvatures, np.zeros(len(lengths)), lengths, np.ones(len(lengths))))
     if family.curved:
-        kappa, sharpness = limits_between(here, there, family)
+        kappa, sharpness = limits or limits_between(here, there, family)
         curve = cc_path(here, there, kappa, sharpness)
         forwards = np.ones(len(curve.lengths))
         return Connector(_placed(here, curve.curvatures, curve.sharpnesses, curve.lengths, forwards))

@@ -166,8 +166,15 @@ def start_states(
     return tried[best, rows], np.array(lengths)[best, rows]
 
 
-def limits_between(here: FloatArray, there: FloatArray, family: Family) -> CurvatureLimits:
-    """The limits of the connector between two states (4,): of "time", those under which it takes the least time."""
+def limits_of(exits: FloatArray, entries: FloatArray, family: Family) -> list[CurvatureLimits]:
+    """The limits (k,) of connectors between states (k, 4): of "time", those under which each takes the least time."""
     if family.pace is None:
-        return CurvatureLimits(1 / family.radius, family.sharpness)
-    return family.pace.rungs[int(np.argmin(family.pace.by_rung(here[None], there[None])[:, 0]))]
+        sharpness = family.sharpness
+        return [CurvatureLimits(1 / family.radius if family.radius > 0 else math.inf, sharpness)] * len(exits)
+    rung = family.pace.by_rung(exits, entries).argmin(axis=0)
+    return [family.pace.rungs[k] for k in rung.tolist()]
+
+
+def limits_between(here: FloatArray, there: FloatArray, family: Family) -> CurvatureLimits:
+    """The same for one connector between two states (4,)."""
+    return limits_of(here[None], there[None], family)[0]

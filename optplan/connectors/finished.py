@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from optplan.connectors.driving import connector
-from optplan.connectors.families import Family
+from optplan.connectors.families import Family, limits_of
 from optplan.connectors.ways import driven
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.options import Options
@@ -104,9 +104,10 @@ def connector_lines(exits: FloatArray, entries: FloatArray, family: Family, asid
     if not family.headings and aside == 0:
         return shapely.linestrings(np.stack([exits[:, :2], entries[:, :2]], axis=1))
     flat = [0, 1, 3, 4]
+    limits = limits_of(exits[:, flat], entries[:, flat], family)
     pieces = [
-        connector(here, there, family, turns=False).pieces
-        for here, there in zip(exits[:, flat], entries[:, flat], strict=True)
+        connector(here, there, family, turns=False, limits=allowed).pieces
+        for here, there, allowed in zip(exits[:, flat], entries[:, flat], limits, strict=True)
     ]
     return tracks(pieces, exits[:, flat], entries[:, flat], aside)
 

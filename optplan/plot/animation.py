@@ -13,6 +13,7 @@ import numpy as np
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.drive import Drive, Motion
 from optplan.domain.errors import InputError, LimitError
+from optplan.domain.job import Field
 from optplan.domain.progress import Progress, ProgressCallback, silent
 from optplan.domain.result import Plan
 from optplan.geometry.paths import sampled
@@ -64,7 +65,8 @@ def make_film(
         return
     title = f"{plan.job.name} · {plan.robot.name}"
     factor = duration / lasting
-    stage = Stage(motion, plan.robot, ground, title if factor < 1.05 else f"{title} · {factor:.3g}x")
+    heading = title if factor < 1.05 else f"{title} · {factor:.3g}x"
+    stage = Stage(motion, plan.robot, ground, heading, grass=isinstance(plan.job, Field))
     _write(stage, moments, target, fps, overwrite, progress or silent)
 
 

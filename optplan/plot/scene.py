@@ -35,6 +35,7 @@ class Colours(NamedTuple):
 
 
 SAND = Colours("#ecdcb4", "#dfcb9c", "#8a6a3f", "#1f6f8b", "#3b2f1e", "#f7f7f2", "#2b2b2b", "#c0392b", "#c0392b")
+GRASS = Colours("#4f8a3c", "#5f9a4b", "#ffffff", "#ffd166", "#102408", "#e8e8e8", "#2b2b2b", "#c0392b", "#c0392b")
 PAPER = Colours("#ffffff", "#e6e9ed", "#1c2a39", "#d1495b", "#1c2a39", "#f2c14e", "#2b2b2b", "#c0392b", "#c0392b")
 
 
