@@ -31,6 +31,11 @@ _HOMES = {
     "plan": "optplan.pipeline",
     "plan_from": "optplan.pipeline",
     "resumed": "optplan.resuming",
+    "plan_fleet": "optplan.fleets",
+    "Fleet": "optplan.fleets",
+    "template": "optplan.jobs.fields",
+    "save_job": "optplan.schema.jobs",
+    "Field": "optplan.domain.job",
     "load_plan": "optplan.schema.plans",
     "save_plan": "optplan.schema.plans",
     "draw": "optplan.plot",
@@ -73,6 +78,7 @@ if TYPE_CHECKING:
     from optplan.domain.errors import OptplanError as OptplanError
     from optplan.domain.errors import SolverError as SolverError
     from optplan.domain.job import Drawing as Drawing
+    from optplan.domain.job import Field as Field
     from optplan.domain.job import FillSettings as FillSettings
     from optplan.domain.options import ConnectOptions as ConnectOptions
     from optplan.domain.options import CoverOptions as CoverOptions
@@ -86,8 +92,11 @@ if TYPE_CHECKING:
     from optplan.domain.robot import Robot as Robot
     from optplan.domain.stop import StopRule as StopRule
     from optplan.exports import export_plan as export_plan
+    from optplan.fleets import Fleet as Fleet
+    from optplan.fleets import plan_fleet as plan_fleet
     from optplan.instances import instance as instance
     from optplan.instances import instance_names as instance_names
+    from optplan.jobs.fields import template as template
     from optplan.jobs.reading import read as read
     from optplan.judge import verify as verify
     from optplan.ordering import lower_bound as lower_bound
@@ -103,6 +112,7 @@ if TYPE_CHECKING:
     from optplan.resuming import resumed as resumed
     from optplan.robots import load_robot as load_robot
     from optplan.robots import robot_names as robot_names
+    from optplan.schema.jobs import save_job as save_job
     from optplan.schema.plans import load_plan as load_plan
     from optplan.schema.plans import save_plan as save_plan
     from optplan.simulation import simulate as simulate

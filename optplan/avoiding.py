@@ -179,7 +179,7 @@ def _annealed(
 
     limited = clock.rule.iterations is not None or math.isfinite(clock.rule.seconds)
     coolings = COOLINGS if not limited or clock.rule.iterations is not None else ENDLESS
-    best = annealed(history, _twins(ways), found.nodes, weight, options.order.seed, proceed, coolings)
+    best = annealed(history, twins(ways), found.nodes, weight, options.order.seed, proceed, coolings)
     before, after = (history.value(nodes, 1.0) - history.value(nodes, 0.0) for nodes in (found.nodes, best))
     cost = problem.cost_of(best)
     message = f"{found.message}; wheels over finished work {after:.3g} m instead of {before:.3g} m"
@@ -199,7 +199,7 @@ def _nearest(row: FloatArray, stroke: IntArray) -> IntArray:
     return order[rank < ALIKE][:NEAREST]
 
 
-def _twins(ways: Traversals) -> IntArray:
+def twins(ways: Traversals) -> IntArray:
     """The way (n,) that drives the same stroke the other way round, -1 where there is none."""
     twins = np.full(len(ways), -1, dtype=np.int64)
     for k in range(len(ways)):

@@ -23,6 +23,7 @@ from optplan.domain.stop import StopRule
 from optplan.judge import verify
 from optplan.ordering import solve
 from optplan.problem import ordering_problem, traversals
+from optplan.refilling import with_refills, without_refills
 from optplan.robots import load_robot
 from optplan.timing.fastest import profile
 
@@ -111,6 +112,8 @@ def _cover(before: Plan, progress: ProgressCallback, _: StopRule | None) -> Plan
 def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> Plan:
     if before.cover is None:
         raise InputError("the plan has no strokes yet; run the stage cover first")
+    before = replace(before, cover=without_refills(before.cover))
+    assert before.cover is not None
     job, robot, options = before.job, before.robot, before.options
     ways = traversals(before.cover.strokes, robot, options, before.cover.links)
     problem = ordering_problem(ways, before.cover, robot, options, progress)
@@ -124,8 +127,9 @@ def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> P
     if order.avoid > 0 and problem.clusters > 1 and math.isfinite(ordering.cost):
         ordering = avoid_finished(ordering, problem, ways, before.cover, robot, options, clock, progress)
     ordering = replace(ordering, unit=family_of(robot, options).unit)
+    ordering, ways, strokes = with_refills(ordering, problem, ways, before.cover, robot, options)
     visits = ways.take(ordering.nodes) if math.isfinite(ordering.cost) else None
-    return Plan(job, robot, options, before.cover, ordering, visits)
+    return Plan(job, robot, options, strokes, ordering, visits)
 
 
 def _connect(before: Plan, *_: object) -> Plan:

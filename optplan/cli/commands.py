@@ -11,7 +11,9 @@ import typer
 
 from optplan.cli import output
 from optplan.cli.fields import field_command
+from optplan.cli.fleets import fleet_command
 from optplan.cli.settings import (
+    USUAL_ROBOTS,
     Animate,
     Areas,
     Avoid,
@@ -51,6 +53,7 @@ from optplan.cli.settings import (
     OnCanvas,
     Padding,
     PowerLimit,
+    Refill,
     Reversing,
     RobotName,
     Seed,
@@ -78,7 +81,6 @@ from optplan.domain.errors import InputError
 if TYPE_CHECKING:
     from optplan.domain.result import Plan
 
-USUAL_ROBOTS = {"Drawing": "beach-rake", "Field": "line-marker", "Facade": "boom-washer", "Surface": "arm-grinder"}
 DEMOS = {"drawing": "drawings/lion", "field": "fields/football-pitch"}
 
 app = typer.Typer(
@@ -162,6 +164,7 @@ def plan_command(
     entries: Entries = None,
     avoid: Avoid = None,
     drying: Drying = None,
+    refill: Refill = None,
     corner: Corner = None,
     areas: Areas = None,
     on_canvas: OnCanvas = None,
@@ -426,6 +429,7 @@ def order(
     entries: Entries = None,
     avoid: Avoid = None,
     drying: Drying = None,
+    refill: Refill = None,
     areas: Areas = None,
     on_canvas: OnCanvas = None,
     clearance: Clearance = None,
@@ -729,6 +733,7 @@ def instances(json: Json = False) -> None:
 
 
 app.command("field")(field_command)
+app.command("fleet")(fleet_command)
 
 
 @app.command()

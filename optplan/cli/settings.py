@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 CONFIG = Path("optplan.toml")
 """Configuration file that is read from the current folder when there is one."""
 
+USUAL_ROBOTS = {"Drawing": "beach-rake", "Field": "line-marker", "Facade": "boom-washer", "Surface": "arm-grinder"}
+"""Who does a job unless somebody else is named."""
+
 RobotName = Annotated[str | None, typer.Option("--robot", "-r", help="Preset or robot file (.toml, .json).")]
 ConfigFile = Annotated[Path | None, typer.Option("--config", "-c", help="Settings file; default: ./optplan.toml.")]
 CloseGap = Annotated[
@@ -49,6 +52,9 @@ Cut = Annotated[
 ]
 SpotHeadings = Annotated[int | None, typer.Option("--headings", help="Directions in which a spot may be driven.")]
 Keep = Annotated[str | None, typer.Option(help="Of the job: nothing, order, or all (order and directions).")]
+Refill = Annotated[
+    str | None, typer.Option(help="Marks that a tank lasts, e.g. 1500m: stops at the start point to fill it again.")
+]
 EntryVertex = Annotated[
     list[str] | None, typer.Option("--entry", help="Enter an element at a drawn vertex: 'ID:3'. Repeatable.")
 ]
@@ -121,6 +127,7 @@ _PLACES = {
     "cut": ("cover", "cut"),
     "headings": ("cover", "headings"),
     "keep": ("order", "keep"),
+    "refill": ("order", "refill"),
     "solver": ("order", "solver"),
     "metric": ("order", "metric"),
     "time_limit": ("order", "seconds"),

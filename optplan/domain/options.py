@@ -90,6 +90,8 @@ class OrderOptions:
     drying : s after which finished work may be driven over; None: never
     keep : "order": strokes are driven in the order of the job; "all": and each from its first point to its last;
         "nothing"
+    refill : m of marks that a tank lasts, after which it is filled again at the start point; None: no stops for that
+    refill_time : s that filling takes
     """
 
     solver: str = "auto"
@@ -103,6 +105,8 @@ class OrderOptions:
     heading: float | None = None
     drying: float | None = None
     keep: str = "nothing"
+    refill: float | None = None
+    refill_time: float = 120.0
 
     def __post_init__(self) -> None:
         if isinstance(self.avoid, bool) or not 0 <= self.avoid <= MAX_NUMBER:
@@ -111,7 +115,9 @@ class OrderOptions:
             raise InputError(f"there is no metric {self.metric!r}; expected one of {', '.join(METRICS)}")
         if self.keep not in KEEP:
             raise InputError(f"order keep is {self.keep!r}; expected one of {', '.join(KEEP)}")
-        _above_zero("order", seconds=self.seconds, drying=self.drying)
+        _above_zero("order", seconds=self.seconds, drying=self.drying, refill=self.refill)
+        if isinstance(self.refill_time, bool) or not 0 <= self.refill_time <= MAX_NUMBER:
+            raise InputError(f"order refill_time is {self.refill_time} s; expected 0 to {MAX_NUMBER:g}")
         _whole("order", iterations=self.iterations, seed=self.seed, entries=self.entries)
         if self.iterations is not None and not 0 <= self.iterations < 2**62:
             raise InputError(f"order iterations is {self.iterations}; expected 0..2^62 - 1")

@@ -60,6 +60,8 @@ class OrderModel(Model):
     entries: int | None = Field(None, ge=1, description="most vertices at which a closed stroke may be entered")
     avoid: float = Field(0.0, ge=0, description="metres worth a metre not driven over finished work")
     keep: str = Field("nothing", description="of the job: nothing, its order, or all: order and directions")
+    refill: Length | None = Field(None, description="marks that a tank lasts; it is filled again at the start point")
+    refill_time: Duration = Field(120.0, ge=0, description="that filling takes")
 
 
 class ConnectModel(Model):

@@ -53,6 +53,63 @@ def total(
 
 
 @njit(cache=True, nogil=True)
+def propose(
+    order: IntArray,
+    tried: IntArray,
+    cluster: IntArray,
+    twin: IntArray,
+    first: IntArray,
+    members: IntArray,
+    random: npt.NDArray[np.uint64],
+) -> bool:
+    """Write a neighbour of an order to `tried`; False when a piece cannot be turned round.
+
+    Moves: a piece elsewhere, perhaps turned round, a piece turned round where it is, another node of a cluster. twin
+    (n,): the node that drives a cluster the other way round, or -1; the nodes of cluster c are
+    members[first[c]:first[c + 1]].
+    """
+    m = len(order)
+    kind = draw(random, 10)
+    for i in range(m):
+        tried[i] = order[i]
+    good = True
+    if kind < 3 or m < 3:
+        i = draw(random, m)
+        c = cluster[order[i]]
+        tried[i] = members[first[c] + draw(random, first[c + 1] - first[c])]
+    elif kind < 5:
+        i = draw(random, m)
+        j = draw(random, m)
+        if i > j:
+            i, j = j, i
+        for k in range(i, j + 1):
+            tried[k] = twin[order[j - (k - i)]]
+            good = good and tried[k] >= 0
+    else:
+        size = 1 + draw(random, 1 + draw(random, min(m - 1, 8)))
+        i = draw(random, m - size + 1)
+        to = draw(random, m - size + 1)
+        turned = draw(random, 2) == 0
+        at = 0
+        rest = 0
+        while at < m:
+            if at == to:
+                for k in range(size):
+                    node = twin[order[i + size - 1 - k]] if turned else order[i + k]
+                    good = good and node >= 0
+                    tried[at] = node
+                    at += 1
+                if at >= m:
+                    break
+            if rest == i:
+                rest += size
+            tried[at] = order[rest]
+            at += 1
+            rest += 1
+    return good
+
+
+@njit(cache=True, nogil=True)
 def anneal(
     order: IntArray,
     best: IntArray,
@@ -74,53 +131,12 @@ def anneal(
     steps: int,
     random: npt.NDArray[np.uint64],
 ) -> tuple[float, float]:
-    """So many steps from `order`, which is changed, as is `best`; returns the costs of both.
-
-    Moves: a piece elsewhere, perhaps turned round, a piece turned round where it is, another node of a cluster. twin
-    (n,): the node that drives a cluster the other way round, or -1; the nodes of cluster c are
-    members[first[c]:first[c + 1]].
-    """
+    """So many steps from `order`, which is changed, as is `best`; returns the costs of both. See `propose`."""
     m = len(order)
     tried = np.empty(m, dtype=np.int64)
     for step in range(steps):
         heat = hot * (cold / hot) ** (step / steps)
-        kind = draw(random, 10)
-        for i in range(m):
-            tried[i] = order[i]
-        good = True
-        if kind < 3 or m < 3:
-            i = draw(random, m)
-            c = cluster[order[i]]
-            tried[i] = members[first[c] + draw(random, first[c + 1] - first[c])]
-        elif kind < 5:
-            i = draw(random, m)
-            j = draw(random, m)
-            if i > j:
-                i, j = j, i
-            for k in range(i, j + 1):
-                tried[k] = twin[order[j - (k - i)]]
-                good = good and tried[k] >= 0
-        else:
-            size = 1 + draw(random, 1 + draw(random, min(m - 1, 8)))
-            i = draw(random, m - size + 1)
-            to = draw(random, m - size + 1)
-            turned = draw(random, 2) == 0
-            at = 0
-            rest = 0
-            while at < m:
-                if at == to:
-                    for k in range(size):
-                        node = twin[order[i + size - 1 - k]] if turned else order[i + k]
-                        good = good and node >= 0
-                        tried[at] = node
-                        at += 1
-                    if at >= m:
-                        break
-                if rest == i:
-                    rest += size
-                tried[at] = order[rest]
-                at += 1
-                rest += 1
+        good = propose(order, tried, cluster, twin, first, members, random)
         if not good:
             continue
         new = total(tried, cluster, costs, start, end, on_node, on_arc, weight, must)
