@@ -33,6 +33,7 @@ bench: .venv/.ready
 	-$(MAKE) --no-print-directory .peers/.ready
 	-$(RUN)python -m benchmarks
 	-$(RUN)python -m benchmarks.connectors
+	-$(RUN)python -m benchmarks.fields
 	-$(RUN)python -m benchmarks.driving
 	-$(RUN)python -m benchmarks.speed
 	$(RUN)python -m benchmarks.ordering

@@ -91,7 +91,19 @@ def film() -> None:
     op.animate(plan, FOLDER / "lion.gif", drive=op.simulate(plan), fps=12, size=6, overwrite=True)
 
 
-PICTURES = {"convergence": convergence, "square": square, "drawings": drawings, "film": film}
+def field() -> None:
+    """A football pitch for the line marker, by time and off wet paint, and the robot marking it."""
+    options = op.Options(
+        order=op.OrderOptions(seconds=60, avoid=2.0), time=op.TimeOptions(work_speed=1.5, transit_speed=1.9)
+    )
+    plan = op.plan(op.template("football"), "line-marker", options)
+    assert plan.ordering is not None
+    print(plan.ordering.cost, plan.ordering.bound, plan.ordering.message)
+    op.draw(plan, FOLDER / "field.png", overwrite=True, dpi=90)
+    op.animate(plan, FOLDER / "field.gif", fps=12, size=6, overwrite=True)
+
+
+PICTURES = {"convergence": convergence, "square": square, "drawings": drawings, "film": film, "field": field}
 
 if __name__ == "__main__":
     for picture in sys.argv[1:] or PICTURES:

@@ -35,19 +35,25 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
 
     options, progress = options or Options(), progress or silent
     if isinstance(job, Drawing):
-        return _kept(cover_drawing(job, robot, options, progress), options.order.keep)
+        return _kept(cover_drawing(job, robot, options, progress), robot, options)
     if isinstance(job, Field):
-        return _kept(cover_field(job, robot, options, progress), options.order.keep)
+        return _kept(cover_field(job, robot, options, progress), robot, options)
     raise InputError(f"{job.name}: a {type(job).__name__.lower()} cannot be covered yet; expected a drawing or a field")
 
 
-def _kept(made: Cover, keep: str) -> Cover:
-    """With the order of the job, and its directions, where these are kept."""
+def _kept(made: Cover, robot: Robot, options: Options) -> Cover:
+    """With the order of the job, and its directions, where these are kept; what can only be driven the other way is."""
     from dataclasses import replace
 
+    from optplan.coverage.beside import refusals
+
+    keep = options.order.keep
     if keep == "nothing":
         return made
     strokes = made.strokes
     if keep == "all":
-        strokes = tuple(replace(stroke, directed=not stroke.is_stop, headings=1) for stroke in strokes)
+        strokes = tuple(
+            replace(stroke, directed=not stroke.is_stop and not refusals(stroke, robot, options)[0], headings=1)
+            for stroke in strokes
+        )
     return replace(made, strokes=strokes, precedence=tuple((k, k + 1) for k in range(len(strokes) - 1)))

@@ -56,6 +56,8 @@ def beside(stroke: Stroke, reverse: bool, robot: Robot, options: Options) -> Bes
 
 def refusals(stroke: Stroke, robot: Robot, options: Options) -> tuple[str, str]:
     """Why the robot cannot drive a stroke forwards, and against the order of its points; empty where it can."""
+    if stroke.is_stop:
+        return "", ""
     ways = [beside(stroke, reverse, robot, options) for reverse in (False, True)]
     forwards, backwards = ("" if way is None else way.refused for way in ways)
     return forwards, backwards
