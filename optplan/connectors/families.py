@@ -11,7 +11,7 @@ import numpy as np
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.options import Options
-from optplan.domain.robot import Robot
+from optplan.domain.robot import Boom, Robot
 
 START_HEADINGS = 36
 """Headings tried at a start point, which itself asks for none."""
@@ -23,6 +23,10 @@ def metric_of(robot: Robot, options: Options) -> str:
     Raises InputError when straight moves are asked of a robot that cannot turn on the spot.
     """
     asked = options.order.metric
+    if asked == "time":
+        if not isinstance(robot.mobility, Boom):
+            raise InputError(f"the metric 'time' is for boom lifts, which {robot.name} is not")
+        return "euclid"  # of its stops; `Travel` has the times between them
     if asked == "euclid" and robot.heading_counts:
         raise InputError(
             f"the metric 'euclid' needs turns on the spot, which {robot.name} cannot; expected 'dubins' or 'cc'"

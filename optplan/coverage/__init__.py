@@ -20,7 +20,7 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
     Parameters
     ----------
     job, robot : what is to be done and by whom
-    options : settings of the plan; their groups `page`, `cover` and `connect` matter here
+    options : settings of the plan; their groups `page`, `cover`, `connect` and `wash` matter here
 
     Raises
     ------
@@ -28,10 +28,14 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
         that this robot or this version does not cover
     """
     from optplan.coverage.drawing import cover_drawing
-    from optplan.domain.job import Drawing
+    from optplan.domain.job import Drawing, Facade
     from optplan.domain.options import Options
     from optplan.domain.progress import silent
 
     if isinstance(job, Drawing):
         return cover_drawing(job, robot, options or Options(), progress or silent)
-    raise InputError(f"{job.name}: a {type(job).__name__.lower()} cannot be covered yet; expected a drawing")
+    if isinstance(job, Facade):
+        from optplan.coverage.facade import cover_facade
+
+        return cover_facade(job, robot, options or Options(), progress or silent)
+    raise InputError(f"{job.name}: a {type(job).__name__.lower()} cannot be covered yet; expected a drawing or a facade")

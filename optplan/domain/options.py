@@ -9,8 +9,9 @@ from optplan.domain.arrays import MAX_NUMBER
 from optplan.domain.errors import InputError
 from optplan.domain.job import FillSettings
 from optplan.domain.robot import Mobility
+from optplan.domain.washing import WashOptions
 
-METRICS = ("auto", "euclid", "dubins", "cc")
+METRICS = ("auto", "euclid", "dubins", "cc", "time")
 
 Link = tuple[str, int, str, int]
 """An enforced connection: stroke and its drawn vertex, counted from 0 (-1: the last), twice."""
@@ -71,7 +72,8 @@ class OrderOptions:
     Parameters
     ----------
     solver : a name from `optplan.ordering.SOLVERS`, or "auto"
-    metric : "euclid", "dubins", "cc" (continuous curvature), or "auto": what the robot's mobility asks for
+    metric : "euclid", "dubins", "cc" (continuous curvature), "time" (s, on facades), or "auto": what the robot's
+        mobility asks for
     seconds, iterations : stop rule; None sets no limit beyond the solver's own
     seed : of everything random
     start : (x, y) m where the robot stands, or None for the drawing's own start point, or a free choice
@@ -199,6 +201,7 @@ class Options:
     order: OrderOptions = field(default_factory=OrderOptions)
     connect: ConnectOptions = field(default_factory=ConnectOptions)
     time: TimeOptions = field(default_factory=TimeOptions)
+    wash: WashOptions = field(default_factory=WashOptions)
 
 
 def _whole(group: str, **values: int | None) -> None:

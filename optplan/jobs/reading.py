@@ -49,6 +49,10 @@ def _read_json(file: Path) -> Job:
     from optplan.schema.jobs import JobModel, job_from
 
     data = parse_json(read_bytes(file), str(file))
+    if isinstance(data, dict) and "circles" in data and "kind" not in data:
+        from optplan.jobs.washing import facade_of_case
+
+        return facade_of_case(data, file)
     check_version(data, str(file))
     try:
         model = TypeAdapter(JobModel).validate_python(data)

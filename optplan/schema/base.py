@@ -13,7 +13,7 @@ from pydantic_core import CoreSchema, core_schema
 from optplan.domain import units
 from optplan.domain.errors import InputError
 
-VERSION = "1.4"
+VERSION = "1.5"
 """Version of the file formats. A newer minor version adds what an older program may not leave out."""
 
 

@@ -162,11 +162,11 @@ def _changed(*place: object, value: object) -> str:
         (("version",), "2.0", "format version 2.0"),
         (("version",), "1.5", "Update optplan"),
         (("version",), "0.9", "Write it again"),
-        (("version",), "1", "expected '1.4'"),
-        (("version",), "1.²", "expected '1.4'"),
-        (("version",), "1." + "9" * 5000, "expected '1.4'"),
-        (("version",), None, "expected '1.4'"),
-        (("version",), ["1", "0"], "expected '1.4'"),
+        (("version",), "1", "expected '1.5'"),
+        (("version",), "1.²", "expected '1.5'"),
+        (("version",), "1." + "9" * 5000, "expected '1.5'"),
+        (("version",), None, "expected '1.5'"),
+        (("version",), ["1", "0"], "expected '1.5'"),
         (("format",), "a poem", "format: "),
         (("colour",), "red", "colour: is not known"),
         (("cover", "strokes", 0, "points", 0, 0), math.nan, "holds NaN"),
@@ -230,7 +230,7 @@ def test_older_minor_versions_are_read(monkeypatch: pytest.MonkeyPatch, version:
     monkeypatch.setattr(base, "VERSION", "1.3")
     plan_from_json(_changed("version", value=version))
     with pytest.raises(InputError, match=r"reads 1\.0 to 1\.3"):
-        plan_from_json(_changed("version", value="1.4"))
+        plan_from_json(_changed("version", value="1.5"))
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "1", "null", '"x"', "[" * 100_000, "\ufeff{}", b"\xff\xff", b"\x00"])
