@@ -26,17 +26,20 @@ from optplan.cli.settings import (
     ElementFill,
     Entries,
     EntryVertex,
+    Fewest,
     FilmDuration,
     FilmSize,
     Fps,
     Frames,
     HeadingNoise,
+    Horizontal,
     Ideal,
     InnerFirst,
     Inset,
     Iterations,
     JerkLimit,
     Lag,
+    Lift,
     Links,
     Lookahead,
     Margin,
@@ -45,9 +48,12 @@ from optplan.cli.settings import (
     Motor,
     Noise,
     OnCanvas,
+    Pattern,
+    Placement,
     PowerLimit,
     Reversing,
     RobotName,
+    Rule,
     Seed,
     Simulated,
     Slip,
@@ -59,6 +65,8 @@ from optplan.cli.settings import (
     Tolerance,
     Tracker,
     TransitSpeed,
+    Travel,
+    Water,
     WorkSpeed,
     config_text,
     pose,
@@ -73,7 +81,9 @@ if TYPE_CHECKING:
     from optplan.domain.result import Plan
 
 USUAL_ROBOT = "beach-rake"
-DEMOS = {"drawing": "drawings/lion"}
+USUAL_ROBOTS = {"Facade": "boom-washer"}
+"""For kinds of job that the usual robot does not do."""
+DEMOS = {"drawing": "drawings/lion", "facade": "facades/windows"}
 
 app = typer.Typer(
     name="optplan",
@@ -160,6 +170,14 @@ def plan_command(
     jerk: JerkLimit = None,
     power: PowerLimit = None,
     constant_speed: ConstantSpeed = None,
+    pattern: Pattern = None,
+    fewest: Fewest = None,
+    placement: Placement = None,
+    rule: Rule = None,
+    water: Water = None,
+    horizontal: Horizontal = None,
+    travel: Travel = None,
+    lift: Lift = None,
 ) -> None:
     """Plan a job: writes plan.json and a picture, checks the plan and prints the findings."""
     from optplan.instances import shipped_or_file
@@ -168,9 +186,9 @@ def plan_command(
     base = read_config(config)
     options = settings_of(base, flags)
     job = shipped_or_file(job)
-    chosen = robot or base.get("robot") or USUAL_ROBOT
+    chosen = robot or base.get("robot")
     if print_config:
-        print(config_text(options, chosen), end="")
+        print(config_text(options, chosen or USUAL_ROBOT), end="")
         return
     folder = out or Path(f"{job.stem}-plan")
     _plan_and_write(job, chosen, options, folder, export or [], force, quiet, json, close_gap, entry)
@@ -178,7 +196,7 @@ def plan_command(
 
 @app.command()
 def demo(
-    kind: Annotated[str, typer.Argument(help="drawing, or the name of a shipped instance.")] = "drawing",
+    kind: Annotated[str, typer.Argument(help="drawing, facade, or the name of a shipped instance.")] = "drawing",
     robot: RobotName = None,
     out: Annotated[Path | None, typer.Option("--output", "-o", help="Folder; default: optplan-demo.")] = None,
     force: Force = False,
@@ -196,12 +214,12 @@ def demo(
             number += 1
             folder = Path(f"optplan-demo-{number}")
     options = settings_of({}, {})
-    _plan_and_write(file, robot or USUAL_ROBOT, options, folder, ["csv", "txt"], force, quiet, json)
+    _plan_and_write(file, robot, options, folder, ["stops"] if "facade" in str(file) else ["csv", "txt"], force, quiet, json)
 
 
 def _plan_and_write(
     job: Path,
-    robot: str,
+    robot: str | None,
     options: Any,
     folder: Path,
     export: list[str],
@@ -214,6 +232,7 @@ def _plan_and_write(
     import math
 
     import optplan as op
+    from optplan.domain.facade import Facade
     from optplan.domain.stop import StopRule
     from optplan.exports import FORMATS
 
@@ -222,15 +241,16 @@ def _plan_and_write(
         raise InputError(f"there is no format {unknown[0]!r}; expected one of {', '.join(FORMATS)}", "--export")
     targets = [folder / "plan.json", folder / "picture.png", folder / "picture.svg"]
     targets += [folder / f"plan{FORMATS[name].suffix}" for name in export]
+    read = with_entries(op.read(job, close_gap=close_gap), entry)
+    building = folder / "building.png" if isinstance(read, Facade) else None
     if folder.exists() and not folder.is_dir():
         raise InputError("is a file; expected a folder for the plan and its pictures", str(folder))
-    for target in targets:  # find out before the work, not after it
+    for target in [*targets, *([building] if building else [])]:  # find out before the work, not after it
         if target.exists() and not force:
             raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
-    machine = op.load_robot(robot)
+    machine = op.load_robot(robot or USUAL_ROBOTS.get(type(read).__name__, USUAL_ROBOT))
     order = options.order
     with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
-        read = with_entries(op.read(job, close_gap=close_gap), entry)
         rule = StopRule(
             seconds=math.inf if order.seconds is None else order.seconds,
             iterations=order.iterations,
@@ -240,8 +260,11 @@ def _plan_and_write(
     op.save_plan(plan, targets[0], overwrite=force)
     for picture in targets[1:3]:
         op.draw(plan, picture, overwrite=force)
+    if building is not None:
+        op.draw(plan, building, overwrite=force, in_space=True)
+        targets.append(building)
     if plan.path is not None:
-        for name, target in zip(export, targets[3:], strict=True):
+        for name, target in zip(export, targets[3:], strict=False):
             op.export_plan(plan, name, target, overwrite=force)
     written = [str(target) for target in targets if target.exists()]
     exports = {folder / f"plan{kind.suffix}" for kind in FORMATS.values()} - set(targets)
@@ -256,7 +279,7 @@ def _tell(plan: Plan, written: list[str], json: bool, older: Sequence[str] = ())
     else:
         output.print_notes(plan)
         if plan.ordering is not None:
-            output.print_order(plan.ordering)
+            output.print_order(plan.ordering, output.unit_of(plan))
         if plan.report is not None:
             output.print_report(plan.report)
         verdict = "planned and verified" if good else "NO VALID PLAN" if plan.path is None else "A CHECK FAILED"
@@ -317,7 +340,7 @@ def _print_stage(plan: Plan, stage: str) -> None:
         areas = f", {len(plan.cover.areas)} areas" if plan.cover.areas else ""
         print(f"cover: {len(plan.cover.strokes)} strokes{areas}")
     if plan.ordering is not None and stage in ("cover", "order"):
-        output.print_order(plan.ordering)
+        output.print_order(plan.ordering, output.unit_of(plan))
     if plan.path is not None and plan.report is None:
         down = float(plan.path.length[plan.path.tool != RAISED].sum())
         up = float(plan.path.length[(plan.path.tool == RAISED) & (plan.path.stroke < 0)].sum())
@@ -335,15 +358,26 @@ def _load(file: Path, flags: dict[str, Any]) -> Plan:
     from optplan.domain.result import Plan
 
     robot = flags.get("robot")
-    if file.suffix.lower() in (".svg", ".svgz") and "robot" in flags:
-        return Plan(op.read(file), op.load_robot(robot or USUAL_ROBOT), Options())
+    if "robot" in flags and _is_job(file):
+        job = op.read(file)
+        return Plan(job, op.load_robot(robot or USUAL_ROBOTS.get(type(job).__name__, USUAL_ROBOT)), Options())
     plan = op.load_plan(file)
     return plan if robot is None else replace(plan, robot=op.load_robot(robot))
 
 
+def _is_job(file: Path) -> bool:
+    """Whether a file is a job, to begin with, and no plan."""
+    from optplan.schema.files import read_bytes
+
+    if file.suffix.lower() != ".json":
+        return file.suffix.lower() in (".svg", ".svgz", ".dxf", ".csv")
+    head = read_bytes(file)
+    return b'"job"' not in head and (b'"kind"' in head or b'"circles"' in head)
+
+
 @app.command()
 def cover(
-    file: Annotated[Path, typer.Argument(help="A plan, or a drawing to begin with.", show_default=False)],
+    file: Annotated[Path, typer.Argument(help="A plan, or a job to begin with.", show_default=False)],
     out: OutFile = None,
     robot: RobotName = None,
     rest: Rest = False,
@@ -361,6 +395,11 @@ def cover(
     entry: EntryVertex = None,
     inner_first: InnerFirst = None,
     link: Links = None,
+    pattern: Pattern = None,
+    fewest: Fewest = None,
+    placement: Placement = None,
+    rule: Rule = None,
+    water: Water = None,
 ) -> None:
     """Cover: from the job to strokes."""
     _stage("cover", file, out, dict(locals()), rest, force, quiet, json)
@@ -393,6 +432,9 @@ def order(
     on_canvas: OnCanvas = None,
     clearance: Clearance = None,
     reversing: Reversing = None,
+    horizontal: Horizontal = None,
+    travel: Travel = None,
+    lift: Lift = None,
 ) -> None:
     """Order: which stroke after which, entered where."""
     from optplan.cli.ordering import is_instance, order_instance
@@ -401,7 +443,8 @@ def order(
     flags = dict(locals())
     file = shipped_or_file(file)
     if is_instance(file):
-        for name in ("metric", "start", "entries", "avoid", "drying", "areas", "on_canvas", "clearance", "reversing"):
+        for name in ("metric", "start", "entries", "avoid", "drying", "areas", "on_canvas", "clearance", "reversing",
+                     "horizontal", "travel", "lift"):  # fmt: skip
             if flags[name] is not None:
                 flag = "--avoid-finished" if name == "avoid" else f"--{name.replace('_', '-')}"
                 raise InputError("says nothing about an instance of a library, which has its costs", flag)
@@ -536,6 +579,7 @@ def show(
     convergence: Annotated[
         bool, typer.Option("--convergence", help="What the solver found and proved over time, instead of the plan.")
     ] = False,
+    in_space: Annotated[bool, typer.Option("--3d", help="A facade's building in three dimensions.")] = False,
     animate: Animate = False,
     frames: Frames = False,
     simulated: Simulated = False,
@@ -569,7 +613,7 @@ def show(
         op.draw_convergence(plan.ordering, target, title=plan.job.name, overwrite=force, dpi=dpi or 150)
     else:
         target = out or file.with_suffix(".png")
-        op.draw(plan, target, overwrite=force, dpi=dpi or 150)
+        op.draw(plan, target, overwrite=force, dpi=dpi or 150, in_space=in_space)
     _tell_file(target, json)
 
 
@@ -607,7 +651,8 @@ def export_command(
         typer.Option(
             "--to",
             "-t",
-            help="csv: points in time; txt: lines 'x y tool'; tool: its commands; tsplib: the ordering problem.",
+            help="csv: points in time; txt: lines 'x y tool'; tool: its commands; tsplib: the ordering problem; "
+            "stops, stops-json: of a facade.",
         ),
     ],
     out: OutFile = None,

@@ -141,11 +141,16 @@ def print_notes(plan: Plan) -> None:
         print_table(("", "", ""), _note_rows(notes))
 
 
-def print_order(ordering: Ordering) -> None:
+def unit_of(plan: Plan) -> str:
+    """Of what an order costs."""
+    return "s" if plan.options.order.metric == "time" else "m"
+
+
+def print_order(ordering: Ordering, unit: str = "m") -> None:
     """The solver's answer in one or two lines."""
     gap = "no bound" if math.isinf(ordering.gap) else f"gap {100 * ordering.gap:.2f} %"
-    bound = f", bound {ordering.bound:.3f} m" if math.isfinite(ordering.bound) else ""
-    cost = f"{ordering.cost:.3f} m between strokes" if math.isfinite(ordering.cost) else "nothing found"
+    bound = f", bound {ordering.bound:.3f} {unit}" if math.isfinite(ordering.bound) else ""
+    cost = f"{ordering.cost:.3f} {unit} between strokes" if math.isfinite(ordering.cost) else "nothing found"
     print(f"order: {ordering.status.value} by {ordering.solver}: {cost}{bound}, {gap}; {ordering.stopped.value}")
     if ordering.message:
         print(f"       {ordering.message}")

@@ -48,7 +48,7 @@ EntryVertex = Annotated[
     list[str] | None, typer.Option("--entry", help="Enter an element at a drawn vertex: 'ID:3'. Repeatable.")
 ]
 SolverName = Annotated[str | None, typer.Option("--solver", "-s", help="See: optplan solvers.")]
-Metric = Annotated[str | None, typer.Option(help="euclid, dubins, cc or auto.")]
+Metric = Annotated[str | None, typer.Option(help="euclid, dubins, cc, time (facades) or auto.")]
 TimeLimit = Annotated[str | None, typer.Option(help="For ordering, e.g. 10s or 2min.")]
 Iterations = Annotated[int | None, typer.Option(help="Limit of ordering; with a seed repeatable.")]
 Seed = Annotated[int | None, typer.Option(help="Of everything random.")]
@@ -78,6 +78,17 @@ PowerLimit = Annotated[str | None, typer.Option("--power", help="Limit of accele
 ConstantSpeed = Annotated[
     str | None, typer.Option("--constant-speed", help="One speed everywhere, m/s: to compare with older planners.")
 ]
+
+Pattern = Annotated[str | None, typer.Option(help="Of washing circles: hexagon, square, brick, stretched or best.")]
+Fewest = Annotated[str | None, typer.Option(help="Circles left out: pattern (useless ones), minimal or exact.")]
+Placement = Annotated[
+    str | None, typer.Option("--placement", help="The cover stays complete though stops are off by this, e.g. 10cm.")
+]
+Rule = Annotated[str | None, typer.Option(help="Of the order of stops: overlap, rows or none.")]
+Water = Annotated[str | None, typer.Option("--water", help="Facades are washed up or down: bottom to top or not.")]
+Horizontal = Annotated[float | None, typer.Option(help="Weight of horizontal metres between stops.")]
+Travel = Annotated[str | None, typer.Option(help="Past no-go areas: straight, around or lift.")]
+Lift = Annotated[str | None, typer.Option(help="How far from the wall it passes them, beyond the stand-off.")]
 
 Tracker = Annotated[str, typer.Option(help="path-frame or pure-pursuit.")]
 Ideal = Annotated[bool, typer.Option("--ideal", help="No lag, no slip, no noise.")]
@@ -122,6 +133,14 @@ _PLACES = {
     "jerk": ("time", "jerk"),
     "power": ("time", "power"),
     "constant_speed": ("time", "constant_speed"),
+    "pattern": ("wash", "pattern"),
+    "fewest": ("wash", "fewest"),
+    "placement": ("wash", "tolerance"),
+    "rule": ("wash", "rule"),
+    "water": ("wash", "direction"),
+    "horizontal": ("wash", "horizontal"),
+    "travel": ("wash", "travel"),
+    "lift": ("wash", "lift"),
 }
 """Flags that are one setting: their group and name."""
 

@@ -55,6 +55,18 @@ def _tsplib(plan: Plan, _: float) -> str:
     return tsplib_text(plan)
 
 
+def _stops(plan: Plan, _: float) -> str:
+    from optplan.exports.stops import stops_text
+
+    return stops_text(plan)
+
+
+def _stops_json(plan: Plan, _: float) -> str:
+    from optplan.exports.stops import stops_json
+
+    return stops_json(plan)
+
+
 FORMATS = {
     form.name: form
     for form in (
@@ -62,6 +74,8 @@ FORMATS = {
         Format("txt", "lines 'x y tool', y down, a blank line at every turn on the spot", ".txt", _txt),
         Format("tool", "commands to the tool, ahead of each change by its delay", ".tool.csv", _tool),
         Format("tsplib", "the ordering problem of its strokes, for other solvers (GTSP or PCGTSP)", ".gtsp", _tsplib),
+        Format("stops", "stops of a facade: place, normal, stand-off, arrival, dwell and water", ".stops.csv", _stops),
+        Format("stops-json", "the same as JSON", ".stops.json", _stops_json),
     )
 }
 """What `export_plan` writes, by name."""

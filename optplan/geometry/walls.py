@@ -11,6 +11,8 @@ from optplan.domain.facade import Wall
 
 FINE = 0.02
 """Step between places at which the reach on a curved wall is looked at, in reaches."""
+MARGIN = 1e-3
+"""Share of the radius that is given up for stops between those places."""
 
 
 def vertices_of(wall: Wall) -> tuple[FloatArray, FloatArray]:
@@ -74,7 +76,8 @@ def reach_radius(wall: Wall, reach: float, standoff: float) -> float:
 
     A stop's sphere cuts a circle out of a flat wall. On a curved one let the stop be at x0 and a point of its circle of
     radius r at x0 + a, so that it is sqrt(r^2 - a^2) higher: their distance squared is D(a) - a^2 + r^2, D that of the
-    plan alone. Along a side of the plan D(a) - a^2 is linear, so that only its vertices count.
+    plan alone. Along a side of the plan D(a) - a^2 is linear: the ends of sides count, and those of the circle. The
+    stops looked at are FINE reaches apart, besides the vertices and middles of sides.
     """
     flat = math.sqrt(reach**2 - standoff**2)
     if wall.flat:
@@ -84,15 +87,28 @@ def reach_radius(wall: Wall, reach: float, standoff: float) -> float:
     # stops may lie beside the wall, too: before its last side drawn on
     tried = np.arange(at[0] - flat, at[-1] + flat, FINE * reach)
     tried = np.unique(np.concatenate([tried, at, at[1:-1] - 1e-9, (at[1:] + at[:-1]) / 2]))
-    radius = flat
-    for x in tried.tolist():
-        segment = int(segments_of(wall, np.array([x]))[0])
-        foot = plan[segment] + (x - at[segment]) * step[segment] + standoff * _turned(step)[segment]
-        near = np.abs(at - x) < flat
-        excess = ((plan[near] - foot) ** 2).sum(axis=1) - (at[near] - x) ** 2
-        worst = float(excess.max(initial=standoff**2))
-        radius = min(radius, math.sqrt(max(reach**2 - worst, 0.0)))
-    return radius
+
+    def along(x: FloatArray) -> FloatArray:
+        side = segments_of(wall, x)
+        return plan[side] + (x - at[side])[:, None] * step[side]
+
+    feet = along(tried) + standoff * _turned(step)[segments_of(wall, tried)]
+    beside = at - tried[:, None]
+    vertices = ((plan - feet[:, None]) ** 2).sum(axis=2) - beside**2
+
+    def reached(radius: float) -> bool:
+        worst = np.where(np.abs(beside) < radius, vertices, -np.inf).max(initial=standoff**2)
+        for end in (tried - radius, tried + radius):
+            worst = max(worst, float((((along(end) - feet) ** 2).sum(axis=1) - radius**2).max()))
+        return bool(worst + radius**2 <= reach**2)
+
+    low, high = 0.0, flat
+    if reached(flat * (1 - 1e-12)):
+        return flat
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if reached(middle) else (low, middle)
+    return low * (1 - MARGIN)
 
 
 def _turned(step: FloatArray) -> FloatArray:
