@@ -38,6 +38,7 @@ from optplan.cli.settings import (
     Inset,
     Iterations,
     JerkLimit,
+    Kind,
     Lag,
     Lift,
     Links,
@@ -66,6 +67,7 @@ from optplan.cli.settings import (
     Tracker,
     TransitSpeed,
     Travel,
+    Unit,
     Water,
     WorkSpeed,
     config_text,
@@ -127,7 +129,7 @@ def _main(
 @app.command("plan")
 def plan_command(
     job: Annotated[
-        Path, typer.Argument(help="A drawing (.svg), a JSON job, or the name of a shipped one.", show_default=False)
+        Path, typer.Argument(help="A drawing (.svg), a JSON job, a facade (.json, .dxf, .csv), or the name of a shipped one.", show_default=False)
     ],
     robot: RobotName = None,
     out: Annotated[Path | None, typer.Option("--output", "-o", help="Folder; default: <job>-plan.")] = None,
@@ -143,6 +145,8 @@ def plan_command(
     margin: Margin = None,
     tolerance: Tolerance = None,
     close_gap: CloseGap = None,
+    kind: Kind = None,
+    unit: Unit = None,
     direction: Direction = None,
     spacing: Spacing = None,
     inset: Inset = None,
@@ -191,7 +195,7 @@ def plan_command(
         print(config_text(options, chosen or USUAL_ROBOT), end="")
         return
     folder = out or Path(f"{job.stem}-plan")
-    _plan_and_write(job, chosen, options, folder, export or [], force, quiet, json, close_gap, entry)
+    _plan_and_write(job, chosen, options, folder, export or [], force, quiet, json, close_gap, entry, kind, unit)
 
 
 @app.command()
@@ -228,12 +232,15 @@ def _plan_and_write(
     json: bool,
     close_gap: float | None = None,
     entry: list[str] | None = None,
+    kind: str | None = None,
+    unit: str | None = None,
 ) -> None:
     import math
 
     import optplan as op
     from optplan.domain.facade import Facade
     from optplan.domain.stop import StopRule
+    from optplan.domain.units import length
     from optplan.exports import FORMATS
 
     unknown = [name for name in export if name not in FORMATS]
@@ -241,7 +248,9 @@ def _plan_and_write(
         raise InputError(f"there is no format {unknown[0]!r}; expected one of {', '.join(FORMATS)}", "--export")
     targets = [folder / "plan.json", folder / "picture.png", folder / "picture.svg"]
     targets += [folder / f"plan{FORMATS[name].suffix}" for name in export]
-    read = with_entries(op.read(job, close_gap=close_gap), entry)
+    read = with_entries(
+        op.read(job, close_gap=close_gap, kind=kind, unit=None if unit is None else length(unit)), entry
+    )
     building = folder / "building.png" if isinstance(read, Facade) else None
     if folder.exists() and not folder.is_dir():
         raise InputError("is a file; expected a folder for the plan and its pictures", str(folder))

@@ -79,6 +79,8 @@ ConstantSpeed = Annotated[
     str | None, typer.Option("--constant-speed", help="One speed everywhere, m/s: to compare with older planners.")
 ]
 
+Kind = Annotated[str | None, typer.Option("--as", help="What the file is: drawing or facade (an SVG may be both).")]
+Unit = Annotated[str | None, typer.Option("--unit", help="One unit of a facade's drawing, e.g. 1cm; default: 1m.")]
 Pattern = Annotated[str | None, typer.Option(help="Of washing circles: hexagon, square, brick, stretched or best.")]
 Fewest = Annotated[str | None, typer.Option(help="Circles left out: pattern (useless ones), minimal or exact.")]
 Placement = Annotated[

@@ -147,12 +147,12 @@ def _ring(given: FloatArray, what: str) -> FloatArray:
     steps = np.roll(ring, -1, axis=0) - ring
     if (np.hypot(*steps.T) <= SAME).any():
         raise InputError(f"{what} repeats corner {int(np.argmin(np.hypot(*steps.T)))}; expected corners apart")
-    area = float(ring[:, 0] @ np.roll(ring[:, 1], -1) - ring[:, 1] @ np.roll(ring[:, 0], -1)) / 2
-    if abs(area) <= SAME:
-        raise InputError(f"{what} encloses no area; expected a polygon")
     found = _crossing(ring)
     if found is not None:
         raise InputError(f"{what} crosses itself: side {found[0]} meets side {found[1]}; expected a simple polygon")
+    area = float(ring[:, 0] @ np.roll(ring[:, 1], -1) - ring[:, 1] @ np.roll(ring[:, 0], -1)) / 2
+    if abs(area) <= SAME:
+        raise InputError(f"{what} encloses no area; expected a polygon")
     return ring
 
 

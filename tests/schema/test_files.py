@@ -83,7 +83,7 @@ MOBILITIES: tuple[Mobility, ...] = (
     CAR.mobility,
     PLOTTER.mobility,
     DiffDrive(0.5, 0.1, 20.0, 40.0, 1 / 3, 1.0, True, 0.7, 0.3, 4.4),
-    Boom((0.1, 0.2, 1 / 3), 0.3, 1.1, 20.0),
+    Boom((0.1, 0.2, 1 / 3), 0.3, 1.1, 20.0, 1 / 3, 0.1),
     Arm(0.1, 0.2, 1 / 3, 1.5),
 )
 
@@ -160,7 +160,7 @@ def _changed(*place: object, value: object) -> str:
     ("place", "value", "message"),
     [
         (("version",), "2.0", "format version 2.0"),
-        (("version",), "1.5", "Update optplan"),
+        (("version",), "1.6", "Update optplan"),
         (("version",), "0.9", "Write it again"),
         (("version",), "1", "expected '1.5'"),
         (("version",), "1.²", "expected '1.5'"),
