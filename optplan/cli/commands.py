@@ -129,7 +129,11 @@ def _main(
 @app.command("plan")
 def plan_command(
     job: Annotated[
-        Path, typer.Argument(help="A drawing (.svg), a JSON job, a facade (.json, .dxf, .csv), or the name of a shipped one.", show_default=False)
+        Path,
+        typer.Argument(
+            help="A drawing (.svg), a JSON job, a facade (.dxf, .csv), or the name of a shipped one.",
+            show_default=False,
+        ),
     ],
     robot: RobotName = None,
     out: Annotated[Path | None, typer.Option("--output", "-o", help="Folder; default: <job>-plan.")] = None,
@@ -218,7 +222,9 @@ def demo(
             number += 1
             folder = Path(f"optplan-demo-{number}")
     options = settings_of({}, {})
-    _plan_and_write(file, robot, options, folder, ["stops"] if "facade" in str(file) else ["csv", "txt"], force, quiet, json)
+    _plan_and_write(
+        file, robot, options, folder, ["stops"] if "facade" in str(file) else ["csv", "txt"], force, quiet, json
+    )
 
 
 def _plan_and_write(

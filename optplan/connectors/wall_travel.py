@@ -6,6 +6,7 @@ the wall where it passes them. From wall to wall it moves around the building. O
 
 from __future__ import annotations
 
+import itertools
 import math
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -173,7 +174,7 @@ class Travel:
         return costs
 
     def limits(self, steps: FloatArray, origin: IntArray) -> AxisLimits:
-        """What the boom can do along lines (k, 3) of moves that begin at these stops: its axes are those of their walls."""
+        """What the boom can do along lines (k, 3) of moves that begin at these stops, whose walls give its axes."""
         most = self.options.time.transit_speed or math.inf
         return axis_limits(steps, self.normal[origin], self.up[origin], self.boom, most)
 
@@ -235,9 +236,7 @@ class Travel:
 
     def _from_wall_to_wall(self, i: int, j: int) -> FloatArray | None:
         start, end = self.feet[i], self.feet[j]
-        key = tuple(
-            (round(float(p[0]), 9), round(float(p[1]), 9)) for p in (start, end)
-        )
+        key = tuple((round(float(p[0]), 9), round(float(p[1]), 9)) for p in (start, end))
         pair = (key[0], key[1])
         if pair not in self._plans:
             self._plans[pair] = self._building.way(start[:2], end[:2])
@@ -257,7 +256,9 @@ class Travel:
 
         lines = [_plan_in_space(self.job, k) for k in range(len(self.job.walls))]
         away = self.boom.standoff
-        parts = [shapely.LineString(line).buffer(away, cap_style="flat", join_style="mitre") for line in lines if away > 0]
+        parts = [
+            shapely.LineString(line).buffer(away, cap_style="flat", join_style="mitre") for line in lines if away > 0
+        ]
         ring = np.concatenate(lines) if self.job.building is None else self.job.building
         apart = np.append(True, np.linalg.norm(np.diff(ring, axis=0), axis=1) > SAME)
         if apart.sum() >= 3:
@@ -282,7 +283,7 @@ class Travel:
 def _plan_in_space(job: Facade, number: int) -> FloatArray:
     """(k, 2) m, the plan of a wall seen from above."""
     wall = job.walls[number]
-    at, plan = vertices_of(wall)
+    _at, plan = vertices_of(wall)
     if wall.plan is None:
         low, high = float(wall.outline[:, 0].min()), float(wall.outline[:, 0].max())
         plan = np.array([[low, 0.0], [high, 0.0]])
@@ -294,7 +295,7 @@ def _mapped(number: int, job: Facade, line: FloatArray, away: float) -> FloatArr
     wall = job.walls[number]
     corners, mitres = edge_before(wall, away)
     pieces = [places(wall, line[:1], away)]
-    for here, there in zip(line[:-1], line[1:], strict=True):
+    for here, there in itertools.pairwise(line):
         low, high = sorted((float(here[0]), float(there[0])))
         passed = np.flatnonzero((corners > low) & (corners < high))
         if there[0] < here[0]:
@@ -304,5 +305,3 @@ def _mapped(number: int, job: Facade, line: FloatArray, away: float) -> FloatArr
             pieces.append(lifted(wall, mitres[passed], here[1] + share * (there[1] - here[1])))
         pieces.append(places(wall, there[None], away))
     return np.concatenate(pieces)
-
-

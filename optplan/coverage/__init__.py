@@ -38,4 +38,6 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
         from optplan.coverage.facade import cover_facade
 
         return cover_facade(job, robot, options or Options(), progress or silent)
-    raise InputError(f"{job.name}: a {type(job).__name__.lower()} cannot be covered yet; expected a drawing or a facade")
+    raise InputError(
+        f"{job.name}: a {type(job).__name__.lower()} cannot be covered yet; expected a drawing or a facade"
+    )

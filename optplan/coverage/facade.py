@@ -31,7 +31,9 @@ SLACK = 1e-9
 def boom_of(job: Facade, robot: Robot) -> Boom:
     """The robot's boom; InputError for a robot that has none."""
     if not isinstance(robot.mobility, Boom):
-        raise InputError(f"a facade is washed by a boom lift, which {robot.name} is not; expected boom-washer", job.name)
+        raise InputError(
+            f"a facade is washed by a boom lift, which {robot.name} is not; expected boom-washer", job.name
+        )
     return robot.mobility
 
 
@@ -130,7 +132,8 @@ def precedence_of(points: FloatArray, radius: float, wash: WashOptions, job: Fac
     tau = job.tau if wash.tau is None else wash.tau
     width = job.width if wash.width is None else wash.width
     pairs = lower_first(seen, tau * radius, width * radius)
-    return pairs[pairs[:, 0] != pairs[:, 1]]
+    others: IntArray = pairs[pairs[:, 0] != pairs[:, 1]]
+    return others
 
 
 def _row_after_row(points: FloatArray, radius: float) -> IntArray:

@@ -107,7 +107,11 @@ def placements(area: Any, radius: float, pattern: str, *, turned: bool = True) -
     if pattern == "stretched":
         cells = [stretched(across) for across in STRETCHES.tolist()]
         made = [
-            lay(area, radius, pattern, turn, (a, b), cell) for cell in cells for turn in (0, 90) for a in shares for b in shares
+            lay(area, radius, pattern, turn, (a, b), cell)
+            for cell in cells
+            for turn in (0, 90)
+            for a in shares
+            for b in shares
         ]
         return sorted(made, key=lambda laid: len(laid.centres))
     turns = TURNS[pattern] if turned else TURNS[pattern][:1]

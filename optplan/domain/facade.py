@@ -59,7 +59,7 @@ class Wall:
             object.__setattr__(self, "no_go", holes)
             for k, hole in enumerate(holes):
                 if _cross(self.outline, hole):
-                    raise InputError(f"no-go area {k} crosses the outline; expected it inside, or cut off at the outline")
+                    raise InputError(f"no-go area {k} crosses the outline; expected it inside, or cut off there")
             if self.stops is not None:
                 object.__setattr__(self, "stops", frozen_floats(self.stops, "stops", (None, 2)))
                 if len(self.stops) == 0:
@@ -89,7 +89,7 @@ class Wall:
         low, high = float(self.outline[:, 0].min()), float(self.outline[:, 0].max())
         if low < -1e-6 or high > length.sum() + 1e-6:
             raise InputError(
-                f"the outline reaches from x = {low:g} to {high:g} m; expected it along the plan, 0 to {length.sum():g} m"
+                f"the outline reaches from x = {low:g} to {high:g} m; expected 0 to {length.sum():g} m, along the plan"
             )
         return plan
 

@@ -64,7 +64,7 @@ class Cover:
 
     def __post_init__(self) -> None:
         if len(self.radii) not in (0, len(self.strokes)) or not all(math.isfinite(r) and r > 0 for r in self.radii):
-            raise InputError(f"there are {len(self.radii)} radii of {len(self.strokes)} stops; expected one each, above 0")
+            raise InputError(f"{len(self.radii)} radii for {len(self.strokes)} stops; expected one each, above 0")
         ids = [stroke.id for stroke in self.strokes]
         if len(set(ids)) != len(ids):
             raise InputError("two strokes share an id")

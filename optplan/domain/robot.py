@@ -243,7 +243,7 @@ class Boom(_AnyCurve):
         if not (math.isfinite(self.dwell) and self.dwell >= 0):
             raise InputError(f"dwell is {self.dwell} s; expected 0 or more")
         if not 0 <= self.standoff < self.reach:
-            raise InputError(f"standoff is {self.standoff} m; expected 0 or more, and less than the reach {self.reach} m")
+            raise InputError(f"standoff is {self.standoff} m; expected 0 or more, less than the reach {self.reach} m")
         if not (math.isfinite(self.flow) and self.flow >= 0):
             raise InputError(f"flow is {self.flow} l/s; expected 0 or more")
 

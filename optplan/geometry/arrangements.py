@@ -54,8 +54,9 @@ def faces_of(area: Any, centres: FloatArray, radius: float) -> Faces:
 def holders(points: FloatArray, centres: FloatArray, radius: float) -> csr_array:
     """(m, n) 0 or 1: which circles hold which points (m, 2)."""
     if len(points) == 0 or len(centres) == 0:
-        return csr_array((len(points), len(centres)), dtype=np.int8)
-    found = cKDTree(centres).query_ball_point(points, radius, return_sorted=True)
+        none: Any = csr_array((len(points), len(centres)), dtype=np.int8)
+        return none
+    found: Any = cKDTree(centres).query_ball_point(points, radius, return_sorted=True)
     counts = np.array([len(row) for row in found])
     columns = np.concatenate([np.asarray(row, dtype=np.int64) for row in found]) if counts.sum() else np.zeros(0, int)
     start = np.concatenate([[0], np.cumsum(counts)])
@@ -71,7 +72,8 @@ def _distinct(points: FloatArray, member: csr_array) -> Faces:
         np.add.at(key, rows, weights[member.indices])
     _, first = np.unique(key, return_index=True)
     first.sort()
-    return Faces(points[first], member[first])
+    rows_kept: Any = member[first]
+    return Faces(points[first], rows_kept)
 
 
 def _around_corners(area: Any, centres: FloatArray, radius: float) -> FloatArray:
@@ -80,7 +82,7 @@ def _around_corners(area: Any, centres: FloatArray, radius: float) -> FloatArray
     if len(corners) == 0:
         return np.zeros((0, 2))
     # the borders that meet there: circles through the corner leave it at right angles to their radius, both ways
-    near = cKDTree(centres).query_ball_point(corners, radius * (1 + 1e-7)) if len(centres) else []
+    near: Any = cKDTree(centres).query_ball_point(corners, radius * (1 + 1e-7)) if len(centres) else []
     count = np.array([len(row) for row in near], dtype=np.int64)
     owner = np.repeat(np.arange(len(corners)), count)
     column = np.concatenate([np.asarray(row, dtype=np.int64) for row in near]) if count.sum() else np.zeros(0, int)
@@ -149,12 +151,13 @@ def _meetings(centres: FloatArray, radius: float) -> FloatArray:
     side = height[:, None] * np.column_stack([-step[:, 1], step[:, 0]])
     both = np.concatenate([a + step + side, a + step - side])
     # many circles through one point are one corner
-    return np.unique(np.round(both, 9), axis=0) if len(both) else both
+    distinct: FloatArray = np.unique(np.round(both, 9), axis=0) if len(both) else both
+    return distinct
 
 
 def _in_rings(centres: FloatArray, radius: float) -> FloatArray:
-    """Places just outside of circles, for those whose border meets no other."""
-    return centres + np.array([radius * (1 + STEP), 0.0])
+    """Places just within and outside of circles, for those whose border meets no other."""
+    return np.concatenate([centres + np.array([radius * (1 + step), 0.0]) for step in (STEP, -STEP)])
 
 
 def without_supersets(member: csr_array) -> IntArray:
@@ -169,7 +172,9 @@ def without_supersets(member: csr_array) -> IntArray:
         # common (k, m) counts the members that two sets share
         common = (matrix[begin : begin + 2048] @ turned).tocoo()
         row, column = common.coords[0] + begin, common.coords[1]
-        inside = (common.data == size[column]) & ((size[column] < size[row]) | ((size[column] == size[row]) & (column < row)))
+        inside = (common.data == size[column]) & (
+            (size[column] < size[row]) | ((size[column] == size[row]) & (column < row))
+        )
         keep[row[inside]] = False
     kept: IntArray = order[keep].astype(np.int64)
     return kept

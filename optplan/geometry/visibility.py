@@ -12,7 +12,7 @@ from optplan.domain.arrays import BoolArray, FloatArray, IntArray
 from optplan.domain.errors import LimitError
 
 HAIR = 1e-7
-"""Share of the size of things by which ways keep off corners: on the border, predicates would hang on the last digit."""
+"""Share of the size of things by which obstacles are made smaller: on their border, the last digit decides."""
 MOST_CORNERS = 600
 """Of all obstacles together."""
 

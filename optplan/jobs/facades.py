@@ -83,9 +83,12 @@ def read_dxf(file: Path, unit: float | None) -> Facade:
     try:
         document: Any = ezdxf.readfile(file)  # type: ignore[attr-defined]
         space = document.modelspace()
-        stated = document.header.get("$INSUNITS", 0)
-        factor = unit if unit is not None else units.conversion_factor(stated, units.M) if stated else 1.0
-        rings, other = [], {}
+        stated: Any = document.header.get("$INSUNITS", 0)
+        factor = (
+            unit if unit is not None else units.conversion_factor(units.InsertUnits(stated), units.M) if stated else 1.0
+        )
+        rings: list[tuple[str, FloatArray]] = []
+        other: dict[str, int] = {}
         for entity in space:
             kind = entity.dxftype()
             if kind not in ("LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE"):

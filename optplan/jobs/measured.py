@@ -88,8 +88,12 @@ def _parsed(text: str, where: str) -> list[Measured]:
         except (KeyError, ValueError):
             place = np.full(3, np.nan)
         if not (np.abs(place) < 1e7).all():
-            raise InputError(f"is {','.join(cells)[:60]!r}; expected id, x, y, z in m [, code [, wall]]", f"{where}: line {number}")
-        points.append(Measured(table.get("id", str(number)), place, table.get("code", "").lower(), table.get("wall", ""), number))
+            raise InputError(
+                f"is {','.join(cells)[:60]!r}; expected id, x, y, z in m [, code [, wall]]", f"{where}: line {number}"
+            )
+        points.append(
+            Measured(table.get("id", str(number)), place, table.get("code", "").lower(), table.get("wall", ""), number)
+        )
     return points
 
 
@@ -102,38 +106,36 @@ def _wall(name: str, points: list[Measured], station: FloatArray, notes: list[No
     spread = float(np.sqrt((plane.away[~plane.outlier] ** 2).mean())) if not plane.outlier.all() else math.inf
     if len(wrong) > MOST_OUTLIERS * len(points) or spread > ROUGH or not plane.normal.any():
         named = ", ".join(points[k].id for k in wrong[:5].tolist())
-        raise InputError(
-            f"the points of wall {name!r} lie in no plane" + (f": {len(wrong)} of {len(points)} are off ({named})" if named else "")
-        )
+        off = f": {len(wrong)} of {len(points)} are off ({named})" if named else ""
+        raise InputError(f"the points of wall {name!r} lie in no plane{off}")
     for k in wrong.tolist():
         text = f"is {abs(float(plane.away[k])):.3f} m off the plane of wall {name!r}: left out"
         notes.append(Note("ignored", f"point {points[k].id} (line {points[k].line})", text))
     kept = [point for k, point in enumerate(points) if not plane.outlier[k]]
     rest = plane.away[~plane.outlier]
     worst = kept[int(np.argmax(np.abs(rest)))].id
-    notes.append(
-        Note("notice", name, f"{len(kept)} points, {1000 * spread:.1f} mm off their plane (rms), "
-             f"{1000 * float(np.abs(rest).max()):.1f} mm at point {worst}")  # fmt: skip
-    )
+    most = 1000 * float(np.abs(rest).max())
+    text = f"{len(kept)} points, {1000 * spread:.1f} mm off their plane (rms), {most:.1f} mm at point {worst}"
+    notes.append(Note("notice", name, text))
     normal = plane.normal if (station - plane.centre) @ plane.normal >= 0 else -plane.normal
     normal = _upright(normal, name, notes)
     up = np.array([0.0, 0.0, 1.0]) - normal[2] * normal
     up /= np.linalg.norm(up)
     across = np.cross(up, normal)
-    flat = {
-        code: np.array([[(p.place - plane.centre) @ across, (p.place - plane.centre) @ up] for p in kept if p.code == code])
-        for code in dict.fromkeys(point.code for point in kept)
-    }
+    apart = np.array([point.place - plane.centre for point in kept])
+    places = apart @ np.column_stack([across, up])
+    codes = np.array([point.code for point in kept])
+    flat = {code: places[codes == code] for code in dict.fromkeys(codes.tolist())}
     rings = [flat[code] for code in OUTLINE if code in flat]
     if len(rings) != 1:
         raise InputError(
-            f"wall {name!r} has {len(rings)} outlines; expected corners with one code of {', '.join(OUTLINE[1:])} or none"
+            f"wall {name!r} has {len(rings)} outlines; expected one code of {', '.join(OUTLINE[1:])}, or none, for it"
         )
     low = rings[0].min(axis=0)
     holes = [(code, ring - low) for code, ring in flat.items() if code not in OUTLINE]
     few = [code for code, ring in holes if len(ring) < 3]
     if few:
-        raise InputError(f"area {few[0]!r} of wall {name!r} has fewer than 3 points; expected its corners in their order")
+        raise InputError(f"area {few[0]!r} of wall {name!r} has fewer than 3 points; expected its corners in order")
     origin = plane.centre + low[0] * across + low[1] * up
     return Wall(name, rings[0] - low, tuple(ring for _, ring in holes), None, origin, across, up)
 
@@ -148,4 +150,5 @@ def _upright(normal: FloatArray, name: str, notes: list[Note]) -> FloatArray:
     if lean > 1e-6:
         notes.append(Note("changed", name, f"leans by {math.degrees(lean):.2f} degrees: taken as upright"))
     level = np.array([normal[0], normal[1], 0.0])
-    return level / np.linalg.norm(level)
+    level /= np.linalg.norm(level)
+    return level

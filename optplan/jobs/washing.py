@@ -16,7 +16,7 @@ def facade_of_case(data: dict[str, Any], file: Path) -> Facade:
     from pydantic import ValidationError
 
     if "surface" not in data:
-        raise InputError("has circles but no surface: it can be compared on, not planned; expected a surface", str(file))
+        raise InputError("has circles but no surface: expected one, or optplan compare instead", str(file))
     rule = data.get("rule")
     tables = rule if isinstance(rule, dict) else {}
     known = {"tau": tables.get("tau"), "width": tables.get("d"), "radius": data.get("radius")}

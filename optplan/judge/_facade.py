@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -61,7 +62,7 @@ def verify_facade(plan: Plan, job: Facade) -> Report:
     coverage, areas = _coverage(job, cover, placed, options)
     moves = _moves(path, samples, cover)
     checks += [coverage, _no_go(job, path, samples, placed, options), _walls(job, path, samples)]
-    figures += _figures(path, moves, samples, cover, boom) + areas
+    figures += _figures(path, moves, boom) + areas
     if plan.trajectory is None:
         checks += unchecked(["time", "rest", "axis speed", "axis acceleration"], "the plan has no speeds")
     else:
@@ -146,7 +147,9 @@ def _moves(path: Path, samples: Samples, cover: Cover) -> Moves:
 def _components(moves: Moves, job: Facade, cover: Cover) -> FloatArray:
     """(k, 3) m across the wall, up and away from it: what the axes move."""
     ups = {wall.name: wall.up for wall in job.walls}
-    frames = [(ups.get(s.element, np.zeros(3)), np.zeros(3) if s.normals is None else s.normals[0]) for s in cover.strokes]
+    frames = [
+        (ups.get(s.element, np.zeros(3)), np.zeros(3) if s.normals is None else s.normals[0]) for s in cover.strokes
+    ]
     parts = []
     for step, origin in zip(moves.step, moves.origin.tolist(), strict=True):
         up, normal = frames[origin]
@@ -168,7 +171,7 @@ def _axes(
     moving = gone > 1e-9
     row, gone = row[moving], gone[moving]
     if len(row) == 0:
-        return [held(name, 0.0, 1.0, detail="Nothing moves.") for name in ("axis speed", "axis acceleration")]
+        return [held(name, 0.0, 1.0, "", detail="Nothing moves.") for name in ("axis speed", "axis acceleration")]
     fastest = np.maximum(trajectory.v[1:], trajectory.v[:-1])[moving]
     use = share[row] * fastest[:, None] / np.array(boom.speeds)
     if options.time.transit_speed is not None:
@@ -216,7 +219,7 @@ def _no_go(job: Facade, path: Path, samples: Samples, placed: list[OnWall], opti
 
     metres, spot = 0.0, None
     stops = [row for row in range(len(path)) if path.stroke[row] >= 0]
-    for a, b in zip(stops[:-1], stops[1:], strict=True):
+    for a, b in itertools.pairwise(stops):
         first, last = placed[int(path.stroke[a])], placed[int(path.stroke[b])]
         if first.wall != last.wall or first.wall < 0 or not job.walls[first.wall].no_go:
             continue
@@ -290,7 +293,7 @@ def _walls(job: Facade, path: Path, samples: Samples) -> Check:
     return held("walls", through, 0, "", spot, detail)
 
 
-def _figures(path: Path, moves: Moves, samples: Samples, cover: Cover, boom: Boom) -> Figures:
+def _figures(path: Path, moves: Moves, boom: Boom) -> Figures:
     """Counts, lengths, water, and how natural the order looks: turns, and changes between left and right."""
     length = np.linalg.norm(moves.step, axis=1)
     unit = moves.step / np.maximum(length, 1e-300)[:, None]

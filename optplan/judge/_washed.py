@@ -7,6 +7,7 @@ be covered by the circles' chords, and what lies in the area of every circle by 
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -35,7 +36,7 @@ def bare_spots(area: Any, centres: FloatArray, radius: FloatArray) -> list[Spot]
     rings = [ring for part in shapely.get_parts(area) for ring in (part.exterior, *part.interiors)]
     lines = [shapely.get_coordinates(ring) for ring in rings]
     for line in lines:
-        for a, b in zip(line[:-1], line[1:], strict=True):
+        for a, b in itertools.pairwise(line):
             spots += _bare_on_side(a, b, centres, radius)
     begin = np.concatenate([line[:-1] for line in lines])
     step = np.concatenate([np.diff(line, axis=0) for line in lines])

@@ -20,9 +20,7 @@ PICTURES = (".png", ".svg", ".pdf")
 """File endings of pictures."""
 
 
-def draw(
-    plan: Plan, file: str | Path, *, overwrite: bool = False, dpi: int = 150, in_space: bool = False
-) -> None:
+def draw(plan: Plan, file: str | Path, *, overwrite: bool = False, dpi: int = 150, in_space: bool = False) -> None:
     """Write a picture of a plan: work in true widths, travel, directions, start and end.
 
     Parameters

@@ -29,7 +29,7 @@ def building_figure(plan: Plan, job: Facade) -> Figure:
     axes = made.add_subplot(projection="3d", computed_zorder=False)
     corners = []
     for k, wall in enumerate(job.walls):
-        pieces = [piece for piece in _pieces(wall, wall.outline)]
+        pieces = _pieces(wall, wall.outline)
         corners += pieces
         axes.add_collection3d(Poly3DCollection(pieces, facecolor=WALL, edgecolor="none", zorder=0))
         axes.add_collection3d(Line3DCollection([_line(wall, wall.outline)], colors=TEXT, lw=1.0, zorder=1))
@@ -88,7 +88,9 @@ def _pieces(wall: Wall, ring: FloatArray) -> list[FloatArray]:
         cuts = [shape.bounds[0] - 1, *at[1:-1].tolist(), shape.bounds[2] + 1]
         strips = shapely.box(cuts[:-1], low, cuts[1:], high)
         parts = list(shapely.intersection(strips, shape))
-    flat = [part for shape in parts for part in shapely.get_parts(shape) if part.geom_type == "Polygon" and part.area > 0]
+    flat = [
+        part for shape in parts for part in shapely.get_parts(shape) if part.geom_type == "Polygon" and part.area > 0
+    ]
     made = []
     for part in flat:
         points = shapely.get_coordinates(part.exterior)

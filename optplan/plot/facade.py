@@ -75,7 +75,8 @@ def _normal(cover: Cover, stop: int) -> FloatArray:
     normals = cover.strokes[stop].normals
     if normals is None:
         raise InputError(f"stop {cover.strokes[stop].id!r} has no normal; expected a stop of a facade")
-    return normals[0]
+    normal: FloatArray = normals[0]
+    return normal
 
 
 def facade_figure(plan: Plan, job: Facade) -> Figure:
@@ -86,7 +87,9 @@ def facade_figure(plan: Plan, job: Facade) -> Figure:
 
     seen = shown(plan, job)
     flat = seen.flat()
-    corners = np.concatenate([wall.outline + [offset, 0] for wall, offset in zip(job.walls, seen.offset, strict=True)])
+    corners = np.concatenate(
+        [wall.outline + np.array([offset, 0.0]) for wall, offset in zip(job.walls, seen.offset, strict=True)]
+    )
     everything = np.concatenate([corners, flat - seen.radii[:, None], flat + seen.radii[:, None]])
     low, high = everything.min(axis=0) - 0.3, everything.max(axis=0) + 0.3
     size = high - low
@@ -108,7 +111,9 @@ def facade_figure(plan: Plan, job: Facade) -> Figure:
     )
     points = inches.min() * 72 / size.min()
     draw_order(axes, plan, job, seen, float(points))
-    made.text(0.7 / width, 1 - 0.33 / height, f"{job.name}  ·  {plan.robot.name}", fontsize=12, weight="bold", color=TEXT)
+    made.text(
+        0.7 / width, 1 - 0.33 / height, f"{job.name}  ·  {plan.robot.name}", fontsize=12, weight="bold", color=TEXT
+    )
     made.text(0.7 / width, 1 - 0.6 / height, "   ".join(_facts(plan, seen)), fontsize=9, color=TEXT)
     return made
 
@@ -131,7 +136,7 @@ def draw_order(axes: Axes, plan: Plan, job: Facade, seen: Shown, scale: float) -
     if len(order) == 0:
         axes.plot(*flat.T, ".", color=MOVE, ms=3, zorder=4)
         return
-    lines = _lines(plan, job, seen) if plan.path is not None else []
+    lines = moves_of(plan, job, seen) if plan.path is not None else []
     for line, along in lines:
         colour = MOVE if along else AWAY
         axes.plot(*line.T, "-" if along else ":", color=colour, lw=1.1, zorder=3)
@@ -140,8 +145,14 @@ def draw_order(axes: Axes, plan: Plan, job: Facade, seen: Shown, scale: float) -
         middle, way = (line[long] + line[long + 1]) / 2, steps[long]
         size = math.hypot(*way)
         if size > 1e-9:
-            axes.annotate("", (middle + way / size * 0.01).tolist(), (middle - way / size * 0.01).tolist(), zorder=4,
-                          arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 0.8, "mutation_scale": 8})  # fmt: skip
+            arrow = {"arrowstyle": "-|>", "color": colour, "lw": 0.8, "mutation_scale": 8}
+            axes.annotate(
+                "",
+                (middle + way / size * 0.01).tolist(),
+                (middle - way / size * 0.01).tolist(),
+                zorder=4,
+                arrowprops=arrow,
+            )
     font = min(6.5, 0.45 * float(seen.radii.min()) * scale)
     if len(order) <= NUMBERED and font >= 3:
         for number, stop in enumerate(order.tolist(), start=1):
@@ -152,7 +163,7 @@ def draw_order(axes: Axes, plan: Plan, job: Facade, seen: Shown, scale: float) -
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), fontsize=7, frameon=False, ncols=2)
 
 
-def _lines(plan: Plan, job: Facade, seen: Shown) -> list[tuple[FloatArray, bool]]:
+def moves_of(plan: Plan, job: Facade, seen: Shown) -> list[tuple[FloatArray, bool]]:
     """Polylines (k, 2) of the moves in the picture, and whether each stays on its wall at the stand-off."""
     path = plan.path
     assert path is not None
@@ -169,7 +180,9 @@ def _lines(plan: Plan, job: Facade, seen: Shown) -> list[tuple[FloatArray, bool]
             apart = last[inner] - wall.origin
             away = np.abs(apart @ np.cross(wall.across, wall.up))
             along = bool((away < _standoff(plan) + 1e-6).all())
-            corners = np.column_stack([apart @ wall.across, apart @ wall.up]) + [seen.offset[seen.wall[i]], 0.0]
+            corners = np.column_stack([apart @ wall.across, apart @ wall.up]) + np.array(
+                [seen.offset[seen.wall[i]], 0.0]
+            )
             way = np.concatenate([way[:1], corners, way[1:]])
         lines.append((way, bool(along)))
     return lines

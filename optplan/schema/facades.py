@@ -54,7 +54,9 @@ def facade_from(model: FacadeModel) -> Facade:
     if alone == (model.walls is not None) or (not alone and (model.no_go or model.stops is not None)):
         raise InputError("expected either walls, or the outline, no_go and stops of the only wall")
     if model.outline is not None:
-        walls = (Wall("wall", _array(model.outline), tuple(map(_array, model.no_go)), _maybe(model.stops)),)
+        walls: tuple[Wall, ...] = (
+            Wall("wall", _array(model.outline), tuple(map(_array, model.no_go)), _maybe(model.stops)),
+        )
     else:
         walls = tuple(map(_wall_from, model.walls or []))
     return Facade(

@@ -21,7 +21,9 @@ def profile_stops(path: Path, job: Facade, cover: Cover, robot: Robot, options: 
     """
     asked = options.time
     if asked.jerk is not None or asked.power is not None or asked.constant_speed is not None:
-        raise InputError("a boom lift has limits of speed and acceleration only; expected no jerk, power, constant_speed")
+        raise InputError(
+            "a boom lift has limits of speed and acceleration only; expected no jerk, power, constant_speed"
+        )
     if len(path) == 0:
         return Trajectory(path, np.zeros(1), np.zeros(1), np.zeros(1))
     travel = Travel(job, cover, robot, options)

@@ -137,7 +137,9 @@ def test_walls_are_washed(area: shapely.Polygon, fewest: str) -> None:
     assert bare_spots(area, found.centres, np.ones(len(found.centres))) == []
     assert missed_area(area, found.centres, np.ones(len(found.centres))) < 1e-3
     if fewest == "exact":
-        assert found.bound == len(found.centres) <= len(fewest_circles(area, 1.0, WashOptions(fewest="minimal")).centres)
+        assert (
+            found.bound == len(found.centres) <= len(fewest_circles(area, 1.0, WashOptions(fewest="minimal")).centres)
+        )
 
 
 def test_too_small_circles_are_refused() -> None:

@@ -87,7 +87,9 @@ def test_no_dxf(tmp_path: Path, text: str) -> None:
         op.read(tmp_path / "none.dxf")
 
 
-def _measured(noise: float = 0.002, seed: int = 0, lean: float = 0.0) -> tuple[list[tuple[str, np.ndarray, str]], np.ndarray]:
+def _measured(
+    noise: float = 0.002, seed: int = 0, lean: float = 0.0
+) -> tuple[list[tuple[str, np.ndarray, str]], np.ndarray]:
     """Corners of a wall turned by 30 degrees, 20 m from the station, and its outward normal."""
     random = np.random.default_rng(seed)
     angle = math.radians(30)
@@ -96,7 +98,7 @@ def _measured(noise: float = 0.002, seed: int = 0, lean: float = 0.0) -> tuple[l
     up = math.cos(lean) * np.array([0, 0, 1.0]) - math.sin(lean) * normal
     normal = np.cross(across, up)
     origin = -20 * normal
-    rows = []
+    rows: list[tuple[str, np.ndarray, str]] = []
     for code, ring in (("outline", OUTLINE), ("window", WINDOW)):
         for x, y in ring:
             rows.append((f"p{len(rows)}", origin + x * across + y * up + noise * random.standard_normal(3), code))
@@ -166,7 +168,8 @@ def test_json_is_either_one_wall_or_several(tmp_path: Path) -> None:
     head = {"version": "1.5", "kind": "facade", "name": "f"}
     file.write_text(json.dumps({**head, "outline": OUTLINE, "no_go": [WINDOW]}))
     assert _areas(op.read(file)) == pytest.approx([60, 4])
-    for bad in ({}, {"outline": OUTLINE, "walls": [{"outline": OUTLINE}]}, {"walls": []}, {"no_go": [WINDOW]}):
+    wrong: list[dict[str, object]] = [{}, {"outline": OUTLINE, "walls": [{"outline": OUTLINE}]}, {"walls": []}]
+    for bad in [*wrong, {"no_go": [WINDOW]}]:
         file.write_text(json.dumps({**head, **bad}))
         with pytest.raises(InputError):
             op.read(file)
@@ -175,5 +178,6 @@ def test_json_is_either_one_wall_or_several(tmp_path: Path) -> None:
 def test_washing_cases_are_jobs() -> None:
     job = op.read(op.instance("washing/case2"))
     assert isinstance(job, Facade)
-    assert job.walls[0].stops is not None and len(job.walls[0].stops) == 111
+    assert job.walls[0].stops is not None
+    assert len(job.walls[0].stops) == 111
     assert job.radius == 1.0

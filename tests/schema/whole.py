@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from optplan.domain.facade import Wall
 from optplan.domain.job import (
     Curve,
     Drawing,
@@ -19,7 +20,6 @@ from optplan.domain.job import (
     Note,
     Surface,
 )
-from optplan.domain.facade import Wall
 from optplan.domain.options import ConnectOptions, CoverOptions, Options, OrderOptions, PageOptions, TimeOptions
 from optplan.domain.ordering import Ordering, Status, TracePoint
 from optplan.domain.path import Path, Trajectory
@@ -81,7 +81,9 @@ def plan() -> Plan:
         Stroke("s3", array([[0, 0, 1], [1, 0, THIRD]]), 1, normals=array([[0, 0, 1], [0.6, 0, 0.8]])),
     )
     areas = (Area("a", (box(0, 0, 5, 5), box(1, 1, 1, THIRD)), 2),)
-    cover = Cover(strokes, areas, ((0, 1), (0, 2)), (0.5, THIRD), Canvas(20.0, 10.0, 0.5), NOTES, radii=(1.0, THIRD, 2.0))
+    cover = Cover(
+        strokes, areas, ((0, 1), (0, 2)), (0.5, THIRD), Canvas(20.0, 10.0, 0.5), NOTES, radii=(1.0, THIRD, 2.0)
+    )
     trace = (TracePoint(0.1, math.inf, -math.inf), TracePoint(0.2, 9.0, 3.0))
     ordering = Ordering(
         np.array([0, 3]), 9.0, 3.0, Status.FEASIBLE, StopReason.TIME, "search", 7, 2.5, 100, "because", trace
