@@ -8,12 +8,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from optplan.avoiding import avoid_finished
+from optplan.connectors.boom import profile_stops
 from optplan.connectors.driving import connect
 from optplan.connectors.families import family_of
+from optplan.connectors.stops import connect_stops
 from optplan.coverage import cover
 from optplan.coverage.field import with_areas, with_metric
 from optplan.detours import with_detours
 from optplan.domain.errors import InputError
+from optplan.domain.facade import Facade
 from optplan.domain.job import Field, Job
 from optplan.domain.options import Options
 from optplan.domain.progress import Progress, ProgressCallback, silent
@@ -22,7 +25,7 @@ from optplan.domain.robot import Robot
 from optplan.domain.stop import StopRule
 from optplan.judge import verify
 from optplan.ordering import solve
-from optplan.problem import ordering_problem, traversals
+from optplan.problem import problem_of
 from optplan.refilling import with_refills, without_refills
 from optplan.robots import load_robot
 from optplan.timing.fastest import profile
@@ -115,19 +118,23 @@ def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> P
     before = replace(before, cover=without_refills(before.cover))
     assert before.cover is not None
     job, robot, options = before.job, before.robot, before.options
-    ways = traversals(before.cover.strokes, robot, options, before.cover.links)
-    problem = ordering_problem(ways, before.cover, robot, options, progress)
+    ways, problem = problem_of(job, before.cover, robot, options, progress)
     order = options.order
     rule = stop or StopRule(seconds=order.seconds or math.inf, iterations=order.iterations)
     # what is to be avoided takes the other half of the time
     first = replace(rule, seconds=rule.seconds / 2) if order.avoid > 0 else rule
     clock = rule.start()
     ordering = solve(problem, order.solver, first, order.seed, progress=progress)
-    ordering, problem = with_detours(ordering, problem, ways, before.cover, robot, options, clock, progress)
+    if not isinstance(job, Facade):
+        ordering, problem = with_detours(ordering, problem, ways, before.cover, robot, options, clock, progress)
     if order.avoid > 0 and problem.clusters > 1 and math.isfinite(ordering.cost):
         ordering = avoid_finished(ordering, problem, ways, before.cover, robot, options, clock, progress)
-    ordering = replace(ordering, unit=family_of(robot, options).unit)
-    ordering, ways, strokes = with_refills(ordering, problem, ways, before.cover, robot, options)
+    strokes = before.cover
+    if isinstance(job, Facade):
+        ordering = replace(ordering, unit="s" if order.metric == "time" else "m")
+    else:
+        ordering = replace(ordering, unit=family_of(robot, options).unit)
+        ordering, ways, strokes = with_refills(ordering, problem, ways, strokes, robot, options)
     visits = ways.take(ordering.nodes) if math.isfinite(ordering.cost) else None
     return Plan(job, robot, options, strokes, ordering, visits)
 
@@ -135,13 +142,19 @@ def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> P
 def _connect(before: Plan, *_: object) -> Plan:
     if before.cover is None or before.visits is None:
         raise InputError("the plan has no order yet; run the stage order first")
-    path = connect(before.visits, before.cover, before.robot, before.options)
+    if isinstance(before.job, Facade):
+        path = connect_stops(before.visits, before.job, before.cover, before.robot, before.options)
+    else:
+        path = connect(before.visits, before.cover, before.robot, before.options)
     return replace(before, path=path, trajectory=None, report=None)
 
 
 def _time(before: Plan, *_: object) -> Plan:
     if before.path is None:
         raise InputError("the plan has no path yet; run the stage connect first")
+    if isinstance(before.job, Facade) and before.cover is not None:
+        timed = profile_stops(before.path, before.job, before.cover, before.robot, before.options)
+        return replace(before, trajectory=timed, report=None)
     return replace(before, trajectory=profile(before.path, before.robot, before.options), report=None)
 
 

@@ -13,6 +13,8 @@ from optplan.connectors.ways import ends_of
 from optplan.coverage.beside import refusals
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.errors import InputError, LimitError
+from optplan.domain.facade import Facade
+from optplan.domain.job import Job
 from optplan.domain.options import Options
 from optplan.domain.ordering import ArcCosts, DubinsCosts, EuclidCosts, MatrixCosts, OrderingProblem
 from optplan.domain.progress import Progress, ProgressCallback, silent
@@ -208,6 +210,26 @@ def ordering_problem(
         enforced=_enforced(ways, cover),
         node_costs=padding,
     )
+
+
+def problem_of(
+    job: Job, cover: Cover, robot: Robot, options: Options | None = None, progress: ProgressCallback = silent
+) -> tuple[Traversals, OrderingProblem]:
+    """All ways of driving the strokes of a job, and the problem of ordering them: of any kind of job.
+
+    Raises InputError like `ordering_problem`, or because a facade asks for what a boom lift cannot do.
+    """
+    options = options or Options()
+    ways = traversals(cover.strokes, robot, options, cover.links)
+    if not isinstance(job, Facade):
+        return ways, ordering_problem(ways, cover, robot, options, progress)
+    from optplan.connectors.wall_travel import Travel
+
+    if options.order.avoid > 0 or options.connect.keep_out or options.connect.keep_in is not None:
+        raise InputError("avoid, keep_out and keep_in say nothing about a facade; expected wash.travel instead")
+    travel = Travel(job, cover, robot, options)
+    pairs = np.array(cover.precedence).reshape(-1, 2)
+    return ways, OrderingProblem(ways.stroke, travel.costs(), start_costs=travel.start_costs(), precedence=pairs)
 
 
 def _enforced(ways: Traversals, cover: Cover) -> IntArray:

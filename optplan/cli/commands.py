@@ -31,18 +31,22 @@ from optplan.cli.settings import (
     ElementFill,
     Entries,
     EntryVertex,
+    Fewest,
     FilmDuration,
     FilmSize,
     Fps,
     Frames,
     HeadingNoise,
+    Horizontal,
     Ideal,
     InnerFirst,
     Inset,
     Iterations,
     JerkLimit,
     Keep,
+    Kind,
     Lag,
+    Lift,
     Links,
     Lookahead,
     Margin,
@@ -52,10 +56,13 @@ from optplan.cli.settings import (
     Noise,
     OnCanvas,
     Padding,
+    Pattern,
+    Placement,
     PowerLimit,
     Refill,
     Reversing,
     RobotName,
+    Rule,
     Seed,
     Simulated,
     Slip,
@@ -68,6 +75,9 @@ from optplan.cli.settings import (
     Tolerance,
     Tracker,
     TransitSpeed,
+    Travel,
+    Unit,
+    Water,
     WorkSpeed,
     config_text,
     pose,
@@ -81,7 +91,7 @@ from optplan.domain.errors import InputError
 if TYPE_CHECKING:
     from optplan.domain.result import Plan
 
-DEMOS = {"drawing": "drawings/lion", "field": "fields/football-pitch"}
+DEMOS = {"drawing": "drawings/lion", "field": "fields/football-pitch", "facade": "facades/windows"}
 
 app = typer.Typer(
     name="optplan",
@@ -127,7 +137,8 @@ def plan_command(
     job: Annotated[
         Path,
         typer.Argument(
-            help="A drawing (.svg), a field or another JSON job, or the name of a shipped one.", show_default=False
+            help="A drawing (.svg), a field or another JSON job, a facade (.dxf, .csv), or the name of a shipped one.",
+            show_default=False,
         ),
     ],
     robot: RobotName = None,
@@ -144,6 +155,8 @@ def plan_command(
     margin: Margin = None,
     tolerance: Tolerance = None,
     close_gap: CloseGap = None,
+    kind: Kind = None,
+    unit: Unit = None,
     direction: Direction = None,
     spacing: Spacing = None,
     inset: Inset = None,
@@ -177,6 +190,14 @@ def plan_command(
     jerk: JerkLimit = None,
     power: PowerLimit = None,
     constant_speed: ConstantSpeed = None,
+    pattern: Pattern = None,
+    fewest: Fewest = None,
+    placement: Placement = None,
+    rule: Rule = None,
+    water: Water = None,
+    horizontal: Horizontal = None,
+    travel: Travel = None,
+    lift: Lift = None,
 ) -> None:
     """Plan a job: writes plan.json and a picture, checks the plan and prints the findings."""
     from optplan.instances import shipped_or_file
@@ -190,12 +211,14 @@ def plan_command(
         print(config_text(options, chosen or USUAL_ROBOTS["Drawing"]), end="")
         return
     folder = out or Path(f"{job.stem}-plan")
-    _plan_and_write(job, chosen, options, folder, export or [], force, quiet, json, close_gap, entry)
+    _plan_and_write(
+        job, chosen, options, folder, export or [], force, quiet, json, close_gap, entry, kind=kind, unit=unit
+    )
 
 
 @app.command()
 def demo(
-    kind: Annotated[str, typer.Argument(help="drawing, field, or the name of a shipped instance.")] = "drawing",
+    kind: Annotated[str, typer.Argument(help="drawing, field, facade, or the name of a shipped one.")] = "drawing",
     robot: RobotName = None,
     out: Annotated[Path | None, typer.Option("--output", "-o", help="Folder; default: optplan-demo.")] = None,
     force: Force = False,
@@ -215,6 +238,8 @@ def demo(
     field = kind == "field"
     options = settings_of({}, {"time_limit": "6s", "avoid": 5.0} if field else {})
     formats = ["csv", "schedule", "messages", "pdf"] if field else ["csv", "txt"]
+    if "facade" in str(file):
+        formats = ["stops"]
     _plan_and_write(file, robot, options, folder, formats, force, quiet, json, film=field)
 
 
@@ -230,11 +255,15 @@ def _plan_and_write(
     close_gap: float | None = None,
     entry: list[str] | None = None,
     film: bool = False,
+    kind: str | None = None,
+    unit: str | None = None,
 ) -> None:
     import math
 
     import optplan as op
+    from optplan.domain.facade import Facade
     from optplan.domain.stop import StopRule
+    from optplan.domain.units import length
     from optplan.exports import FORMATS
 
     unknown = [name for name in export if name not in FORMATS]
@@ -242,15 +271,18 @@ def _plan_and_write(
         raise InputError(f"there is no format {unknown[0]!r}; expected one of {', '.join(FORMATS)}", "--export")
     targets = [folder / "plan.json", folder / "picture.png", folder / "picture.svg"]
     targets += [folder / f"plan{FORMATS[name].suffix}" for name in export]
-    targets += [folder / "film.gif"] if film else []
+    films = [folder / "film.gif"] if film else []
+    read = with_entries(
+        op.read(job, close_gap=close_gap, kind=kind, unit=None if unit is None else length(unit)), entry
+    )
+    building = folder / "building.png" if isinstance(read, Facade) else None
     if folder.exists() and not folder.is_dir():
         raise InputError("is a file; expected a folder for the plan and its pictures", str(folder))
-    for target in targets:  # find out before the work, not after it
+    for target in [*targets, *films, *([building] if building else [])]:  # find out before the work, not after it
         if target.exists() and not force:
             raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
-    order = options.order
-    read = with_entries(op.read(job, close_gap=close_gap), entry)
     machine = op.load_robot(robot or USUAL_ROBOTS[type(read).__name__])
+    order = options.order
     with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
         rule = StopRule(
             seconds=math.inf if order.seconds is None else order.seconds,
@@ -261,11 +293,15 @@ def _plan_and_write(
     op.save_plan(plan, targets[0], overwrite=force)
     for picture in targets[1:3]:
         op.draw(plan, picture, overwrite=force)
+    if building is not None:
+        op.draw(plan, building, overwrite=force, in_space=True)
+        targets.append(building)
     if plan.path is not None:
         for name, target in zip(export, targets[3 : 3 + len(export)], strict=True):
             op.export_plan(plan, name, target, overwrite=force)
         if film and plan.trajectory is not None:
-            op.animate(plan, targets[-1], overwrite=force)
+            op.animate(plan, films[0], overwrite=force)
+            targets += films
     written = [str(target) for target in targets if target.exists()]
     exports = {folder / f"plan{kind.suffix}" for kind in FORMATS.values()} - set(targets)
     _tell(plan, written, json, [str(file) for file in sorted(exports) if file.exists()])
@@ -366,16 +402,16 @@ def _load(file: Path, flags: dict[str, Any]) -> Plan:
 
 
 def _is_job(file: Path) -> bool:
-    """Whether a file holds a job rather than a plan."""
-    if file.suffix.lower() in (".svg", ".svgz"):
-        return True
-    if file.suffix.lower() != ".json" or not file.is_file():
+    """Whether a file is a job, to begin with, and no plan."""
+    if file.suffix.lower() != ".json":
+        return file.suffix.lower() in (".svg", ".svgz", ".dxf", ".csv")
+    if not file.is_file():
         return False
     from optplan.schema.base import parse_json
     from optplan.schema.files import read_bytes
 
     data = parse_json(read_bytes(file), str(file))
-    return isinstance(data, dict) and "kind" in data and "job" not in data
+    return isinstance(data, dict) and ("kind" in data or "circles" in data) and "job" not in data
 
 
 @app.command()
@@ -401,6 +437,11 @@ def cover(
     cut: Cut = None,
     headings: SpotHeadings = None,
     keep: Keep = None,
+    pattern: Pattern = None,
+    fewest: Fewest = None,
+    placement: Placement = None,
+    rule: Rule = None,
+    water: Water = None,
 ) -> None:
     """Cover: from the job to strokes."""
     _stage("cover", file, out, dict(locals()), rest, force, quiet, json)
@@ -436,6 +477,9 @@ def order(
     reversing: Reversing = None,
     padding: Padding = None,
     curved_padding: CurvedPadding = None,
+    horizontal: Horizontal = None,
+    travel: Travel = None,
+    lift: Lift = None,
 ) -> None:
     """Order: which stroke after which, entered where."""
     from optplan.cli.ordering import is_instance, order_instance
@@ -444,18 +488,8 @@ def order(
     flags = dict(locals())
     file = shipped_or_file(file)
     if is_instance(file):
-        for name in (
-            "metric",
-            "start",
-            "entries",
-            "avoid",
-            "drying",
-            "areas",
-            "on_canvas",
-            "clearance",
-            "reversing",
-            "padding",
-        ):
+        for name in ("metric", "start", "entries", "avoid", "drying", "areas", "on_canvas", "clearance", "reversing",
+                     "padding", "refill", "horizontal", "travel", "lift"):  # fmt: skip
             if flags[name] is not None:
                 flag = "--avoid-finished" if name == "avoid" else f"--{name.replace('_', '-')}"
                 raise InputError("says nothing about an instance of a library, which has its costs", flag)
@@ -592,6 +626,7 @@ def show(
     convergence: Annotated[
         bool, typer.Option("--convergence", help="What the solver found and proved over time, instead of the plan.")
     ] = False,
+    in_space: Annotated[bool, typer.Option("--3d", help="A facade's building in three dimensions.")] = False,
     animate: Animate = False,
     frames: Frames = False,
     simulated: Simulated = False,
@@ -625,7 +660,7 @@ def show(
         op.draw_convergence(plan.ordering, target, title=plan.job.name, overwrite=force, dpi=dpi or 150)
     else:
         target = out or file.with_suffix(".png")
-        op.draw(plan, target, overwrite=force, dpi=dpi or 150)
+        op.draw(plan, target, overwrite=force, dpi=dpi or 150, in_space=in_space)
     _tell_file(target, json)
 
 
@@ -663,7 +698,8 @@ def export_command(
         typer.Option(
             "--to",
             "-t",
-            help="csv: points in time; txt: lines 'x y tool'; tool: its commands; tsplib: the ordering problem.",
+            help="csv: points in time; txt: lines 'x y tool'; tool: its commands; tsplib: the ordering problem; "
+            "stops, stops-json: of a facade.",
         ),
     ],
     out: OutFile = None,

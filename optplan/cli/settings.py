@@ -98,6 +98,19 @@ ConstantSpeed = Annotated[
     str | None, typer.Option("--constant-speed", help="One speed everywhere, m/s: to compare with older planners.")
 ]
 
+Kind = Annotated[str | None, typer.Option("--as", help="What the file is: drawing or facade (an SVG may be both).")]
+Unit = Annotated[str | None, typer.Option("--unit", help="One unit of a facade's drawing, e.g. 1cm; default: 1m.")]
+Pattern = Annotated[str | None, typer.Option(help="Of washing circles: hexagon, square, brick, stretched or best.")]
+Fewest = Annotated[str | None, typer.Option(help="Circles left out: pattern (useless ones), minimal or exact.")]
+Placement = Annotated[
+    str | None, typer.Option("--placement", help="The cover stays complete though stops are off by this, e.g. 10cm.")
+]
+Rule = Annotated[str | None, typer.Option(help="Of the order of stops: overlap, rows or none.")]
+Water = Annotated[str | None, typer.Option("--water", help="Facades are washed up or down: bottom to top or not.")]
+Horizontal = Annotated[float | None, typer.Option(help="Weight of horizontal metres between stops.")]
+Travel = Annotated[str | None, typer.Option(help="Past no-go areas: straight, around or lift.")]
+Lift = Annotated[str | None, typer.Option(help="How far from the wall it passes them, beyond the stand-off.")]
+
 Tracker = Annotated[str, typer.Option(help="path-frame or pure-pursuit.")]
 Ideal = Annotated[bool, typer.Option("--ideal", help="No lag, no slip, no noise.")]
 Lag = Annotated[str | None, typer.Option(help="Time constant of a wheel's speed, e.g. 50ms.")]
@@ -146,6 +159,14 @@ _PLACES = {
     "jerk": ("time", "jerk"),
     "power": ("time", "power"),
     "constant_speed": ("time", "constant_speed"),
+    "pattern": ("wash", "pattern"),
+    "fewest": ("wash", "fewest"),
+    "placement": ("wash", "tolerance"),
+    "rule": ("wash", "rule"),
+    "water": ("wash", "direction"),
+    "horizontal": ("wash", "horizontal"),
+    "travel": ("wash", "travel"),
+    "lift": ("wash", "lift"),
 }
 """Flags that are one setting: their group and name."""
 

@@ -15,7 +15,7 @@ from optplan.domain.ordering import OrderingProblem
 from optplan.instances import shipped_or_file
 from optplan.ordering.circles import DISTANCE, TAU, circle_problem
 from optplan.ordering.tsplib import SUFFIXES, Instance, read_tsplib
-from optplan.problem import ordering_problem, traversals
+from optplan.problem import problem_of
 from optplan.robots import load_robot
 from optplan.schema.files import read_text
 
@@ -74,8 +74,8 @@ def _of_job(file: Path, robot: str | Path, options: Options) -> OrderingProblem:
     from optplan.jobs.reading import read
 
     machine = load_robot(robot)
-    made = cover(read(file), machine, options)
-    return ordering_problem(traversals(made.strokes, machine, options, made.links), made, machine, options)
+    job = read(file)
+    return problem_of(job, cover(job, machine, options), machine, options)[1]
 
 
 def _of_plan(file: Path) -> OrderingProblem:
@@ -84,8 +84,7 @@ def _of_plan(file: Path) -> OrderingProblem:
     plan = load_plan(file)
     if plan.cover is None:
         raise InputError("the plan has no strokes yet; run optplan cover first", str(file))
-    ways = traversals(plan.cover.strokes, plan.robot, plan.options, plan.cover.links)
-    return ordering_problem(ways, plan.cover, plan.robot, plan.options)
+    return problem_of(plan.job, plan.cover, plan.robot, plan.options)[1]
 
 
 def _circles(file: Path, data: dict[str, object]) -> Case:

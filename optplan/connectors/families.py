@@ -12,7 +12,7 @@ from optplan.connectors.pace import Pace, pace_of
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.options import Options
-from optplan.domain.robot import CurvatureLimits, Robot
+from optplan.domain.robot import Boom, CurvatureLimits, Robot
 
 START_HEADINGS = 36
 """Headings tried at a start point, which itself asks for none."""
@@ -24,6 +24,8 @@ def metric_of(robot: Robot, options: Options) -> str:
     Raises InputError when straight moves are asked of a robot that cannot turn on the spot.
     """
     asked = options.order.metric
+    if asked == "time" and isinstance(robot.mobility, Boom):
+        return "euclid"  # of its stops; `Travel` has the times between them
     if asked == "euclid" and robot.heading_counts:
         raise InputError(
             f"the metric 'euclid' needs turns on the spot, which {robot.name} cannot; expected 'dubins' or 'cc'"

@@ -20,7 +20,7 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
     Parameters
     ----------
     job, robot : what is to be done and by whom
-    options : settings of the plan; their groups `page`, `cover` and `connect` matter here
+    options : settings of the plan; their groups `page`, `cover`, `connect` and `wash` matter here
 
     Raises
     ------
@@ -29,7 +29,7 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
     """
     from optplan.coverage.drawing import cover_drawing
     from optplan.coverage.field import cover_field
-    from optplan.domain.job import Drawing, Field
+    from optplan.domain.job import Drawing, Facade, Field
     from optplan.domain.options import Options
     from optplan.domain.progress import silent
 
@@ -38,7 +38,12 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
         return _kept(cover_drawing(job, robot, options, progress), robot, options)
     if isinstance(job, Field):
         return _kept(cover_field(job, robot, options, progress), robot, options)
-    raise InputError(f"{job.name}: a {type(job).__name__.lower()} cannot be covered yet; expected a drawing or a field")
+    if isinstance(job, Facade):
+        from optplan.coverage.facade import cover_facade
+
+        return cover_facade(job, robot, options, progress)
+    kind = type(job).__name__.lower()
+    raise InputError(f"{job.name}: a {kind} cannot be covered yet; expected a drawing, a field or a facade")
 
 
 def _kept(made: Cover, robot: Robot, options: Options) -> Cover:

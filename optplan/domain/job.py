@@ -11,6 +11,7 @@ import numpy as np
 
 from optplan.domain.arrays import FloatArray, frozen_floats
 from optplan.domain.errors import InputError
+from optplan.domain.facade import Facade as Facade
 
 
 class Note(NamedTuple):
@@ -321,40 +322,6 @@ class Field:
             raise InputError(f"the line width is {self.line_width} m; expected more than 0")
         if self.start is not None and not all(math.isfinite(x) for x in self.start):
             raise InputError(f"the start is {self.start}; expected finite metres")
-
-
-@dataclass(frozen=True, eq=False)
-class Facade:
-    """A wall to wash from stops.
-
-    Parameters
-    ----------
-    name : for people
-    outline : (n, 2) m polygon in the wall's plane, x along the wall, y up
-    no_go : polygons (n, 2) m: windows, balconies
-    stops : (n, 2) m, circle centres when they are given; None leaves them to the cover
-    radius : of a washing circle, m
-    tau, width : the rule of order: i before j when y_j - y_i >= tau * radius and |x_i - x_j| < width * radius
-    """
-
-    name: str
-    outline: FloatArray
-    no_go: tuple[FloatArray, ...] = ()
-    stops: FloatArray | None = None
-    radius: float = 1.0
-    tau: float = 0.75
-    width: float = 2.0
-    notes: tuple[Note, ...] = ()
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "outline", frozen_floats(self.outline, "outline", (None, 2)))
-        object.__setattr__(self, "no_go", tuple(frozen_floats(p, "no_go", (None, 2)) for p in self.no_go))
-        if self.stops is not None:
-            object.__setattr__(self, "stops", frozen_floats(self.stops, "stops", (None, 2)))
-        if not (math.isfinite(self.radius) and self.radius > 0):
-            raise InputError(f"the circle radius is {self.radius} m; expected a finite number above 0")
-        if not (math.isfinite(self.tau) and math.isfinite(self.width)):
-            raise InputError(f"the rule of order has tau {self.tau} and width {self.width}; expected finite numbers")
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ from optplan.domain.arrays import MAX_NUMBER
 from optplan.domain.errors import InputError
 from optplan.domain.job import FillSettings
 from optplan.domain.robot import Mobility
+from optplan.domain.washing import WashOptions
 
 METRICS = ("auto", "euclid", "dubins", "cc", "time")
 KEEP = ("nothing", "order", "all")
@@ -79,7 +80,8 @@ class OrderOptions:
     Parameters
     ----------
     solver : a name from `optplan.ordering.SOLVERS`, or "auto"
-    metric : "euclid", "dubins", "cc" (continuous curvature), or "auto": what the robot's mobility asks for
+    metric : "euclid", "dubins", "cc" (continuous curvature), "time" (s, on facades), or "auto": what the robot's
+        mobility asks for
     seconds, iterations : stop rule; None sets no limit beyond the solver's own
     seed : of everything random
     start : (x, y) m where the robot stands, or None for the drawing's own start point, or a free choice
@@ -234,6 +236,7 @@ class Options:
     order: OrderOptions = field(default_factory=OrderOptions)
     connect: ConnectOptions = field(default_factory=ConnectOptions)
     time: TimeOptions = field(default_factory=TimeOptions)
+    wash: WashOptions = field(default_factory=WashOptions)
 
 
 def _whole(group: str, **values: int | None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from optplan.domain.arrays import FloatArray, frozen_floats
@@ -49,6 +50,7 @@ class Cover:
     notes : what happened on the way: small areas lost, gaps closed ...
     links : enforced connections: stroke, vertex, stroke, vertex; the one is left and the other entered there, or the
         other way round, with nothing in between
+    radii : m, of the circle that each stop washes; none where strokes are lines
     """
 
     strokes: tuple[Stroke, ...]
@@ -58,8 +60,11 @@ class Cover:
     canvas: Canvas | None = None
     notes: tuple[Note, ...] = ()
     links: tuple[tuple[int, int, int, int], ...] = ()
+    radii: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
+        if len(self.radii) not in (0, len(self.strokes)) or not all(math.isfinite(r) and r > 0 for r in self.radii):
+            raise InputError(f"{len(self.radii)} radii for {len(self.strokes)} stops; expected one each, above 0")
         ids = [stroke.id for stroke in self.strokes]
         if len(set(ids)) != len(ids):
             raise InputError("two strokes share an id")

@@ -223,14 +223,18 @@ class Boom(_AnyCurve):
     ----------
     speeds : limits of the axes (across the wall, up the wall, away from it), m/s
     acceleration : of each axis, m/s^2
-    reach : radius of the circle it works from one stop, m
+    reach : of the arm, m: what it works from one stop is within a sphere of this radius
     dwell : working time of a stop, s
+    standoff : of the arm's foot from the wall, m, less than the reach
+    flow : water while it works, l/s
     """
 
     speeds: tuple[float, float, float]
     acceleration: float
     reach: float
     dwell: float
+    standoff: float = 0.0
+    flow: float = 0.0
 
     def __post_init__(self) -> None:
         _positive(self, "acceleration", "reach")
@@ -238,6 +242,15 @@ class Boom(_AnyCurve):
             raise InputError(f"speeds are {self.speeds} m/s; expected three numbers above 0")
         if not (math.isfinite(self.dwell) and self.dwell >= 0):
             raise InputError(f"dwell is {self.dwell} s; expected 0 or more")
+        if not 0 <= self.standoff < self.reach:
+            raise InputError(f"standoff is {self.standoff} m; expected 0 or more, less than the reach {self.reach} m")
+        if not (math.isfinite(self.flow) and self.flow >= 0):
+            raise InputError(f"flow is {self.flow} l/s; expected 0 or more")
+
+    @property
+    def radius(self) -> float:
+        """Of the circle that its sphere cuts out of a flat wall, m."""
+        return math.sqrt(self.reach**2 - self.standoff**2)
 
     @property
     def work_speed(self) -> float:

@@ -86,6 +86,18 @@ def _pdf(plan: Plan, _: float) -> bytes:
     return page.getvalue()
 
 
+def _stops(plan: Plan, _: float) -> str:
+    from optplan.exports.stops import stops_text
+
+    return stops_text(plan)
+
+
+def _stops_json(plan: Plan, _: float) -> str:
+    from optplan.exports.stops import stops_json
+
+    return stops_json(plan)
+
+
 FORMATS = {
     form.name: form
     for form in (
@@ -109,6 +121,8 @@ FORMATS = {
         Format("geojson", "marks and ways on the map, for fields with an anchor", ".geojson", _geojson),
         Format("pdf", "a job sheet of one page", ".pdf", _pdf),
         Format("tsplib", "the ordering problem of its strokes, for other solvers (GTSP or PCGTSP)", ".gtsp", _tsplib),
+        Format("stops", "stops of a facade: place, normal, stand-off, arrival, dwell and water", ".stops.csv", _stops),
+        Format("stops-json", "the same as JSON", ".stops.json", _stops_json),
     )
 }
 """What `export_plan` writes, by name."""

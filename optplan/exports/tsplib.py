@@ -6,7 +6,7 @@ from optplan.domain.errors import InputError
 from optplan.domain.result import Plan
 from optplan.ordering.reduce import contracted
 from optplan.ordering.tsplib import instance_of, instance_text
-from optplan.problem import ordering_problem, traversals
+from optplan.problem import problem_of
 
 
 def tsplib_text(plan: Plan) -> str:
@@ -19,6 +19,5 @@ def tsplib_text(plan: Plan) -> str:
     """
     if plan.cover is None:
         raise InputError("the plan has no strokes yet; run the stage cover first")
-    ways = traversals(plan.cover.strokes, plan.robot, plan.options, plan.cover.links)
-    problem = ordering_problem(ways, plan.cover, plan.robot, plan.options)
+    _, problem = problem_of(plan.job, plan.cover, plan.robot, plan.options)
     return instance_text(instance_of(contracted(problem).problem, plan.job.name or "optplan"))

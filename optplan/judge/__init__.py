@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from optplan.domain.errors import InputError
+from optplan.domain.facade import Facade
 from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check, Report
 from optplan.domain.result import Plan
@@ -14,6 +15,7 @@ from optplan.judge import (
     _areas,
     _continuity,
     _coverage,
+    _facade,
     _finished,
     _gears,
     _motion,
@@ -44,6 +46,8 @@ def verify(plan: Plan) -> Report:
     """
     if plan.path is None:
         raise InputError("the plan has no path yet; run connect first")
+    if isinstance(plan.job, Facade):
+        return _facade.verify_facade(plan, plan.job)
     path, robot, options, cover = plan.path, plan.robot, plan.options, plan.cover
     limit = deviation_limit(robot, options)
     samples = integrate(path, limit / 100)

@@ -20,7 +20,7 @@ PICTURES = (".png", ".svg", ".pdf")
 """File endings of pictures."""
 
 
-def draw(plan: Plan, file: str | Path, *, overwrite: bool = False, dpi: int = 150) -> None:
+def draw(plan: Plan, file: str | Path, *, overwrite: bool = False, dpi: int = 150, in_space: bool = False) -> None:
     """Write a picture of a plan: work in true widths, travel, directions, start and end.
 
     Parameters
@@ -29,13 +29,26 @@ def draw(plan: Plan, file: str | Path, *, overwrite: bool = False, dpi: int = 15
     file : its ending chooses PNG, SVG or PDF
     overwrite : whether an existing file may be replaced
     dpi : pixels per inch of a PNG
+    in_space : a facade's building in three dimensions, instead of its walls unrolled
 
     Raises
     ------
-    InputError : an unknown ending, nothing to draw yet, a file that exists or cannot be written
+    InputError : an unknown ending, nothing to draw yet, a file that exists or cannot be written, or `in_space` for
+        something else than a facade
     """
+    from optplan.domain.facade import Facade
     from optplan.plot.picture import figure
 
+    job = plan.job
+    if isinstance(job, Facade):
+        from optplan.plot.building import building_figure
+        from optplan.plot.facade import facade_figure
+
+        made = building_figure if in_space else facade_figure
+        _save(lambda: made(plan, job), Path(file), overwrite, dpi)
+        return
+    if in_space:
+        raise InputError("a picture in space is made of facades only")
     _save(lambda: figure(plan), Path(file), overwrite, dpi)
 
 

@@ -13,12 +13,13 @@ import numpy as np
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.drive import Drive, Motion
 from optplan.domain.errors import InputError, LimitError
+from optplan.domain.facade import Facade
 from optplan.domain.job import Field
 from optplan.domain.progress import Progress, ProgressCallback, silent
 from optplan.domain.result import Plan
 from optplan.geometry.paths import sampled
 from optplan.plot.films import gif_bytes, mp4_bytes, require_ffmpeg, write_folder
-from optplan.plot.scene import Ground, ground_of
+from optplan.plot.scene import GRASS, Ground, ground_of
 from optplan.plot.stage import Stage
 
 if TYPE_CHECKING:
@@ -54,19 +55,26 @@ def make_film(
     count = round(lasting * fps) + 1
     if count > MOST_FRAMES:
         raise LimitError(f"{lasting:g} s at {fps:g} frames a second are {count} frames; at most {MOST_FRAMES} are made")
-    ground = _ground(plan, drive, round(size * dpi))
     shown = np.linspace(0.0, duration, count)
-    motion = drive if drive is not None else _planned(plan, shown, ground)
+    factor = duration / lasting
+    title = f"{plan.job.name} · {plan.robot.name}" + ("" if factor < 1.05 else f" · {factor:.3g}x")
+    if isinstance(plan.job, Facade):
+        from optplan.plot.facade_film import facade_stage
+
+        if drive is not None:
+            raise InputError("a simulated drive is not shown before a facade; expected the planned motion")
+        stage: Stage = facade_stage(plan, plan.job, shown, round(size * dpi), title)
+        motion: Motion = stage.motion
+    else:
+        ground = _ground(plan, drive, round(size * dpi))
+        motion = drive if drive is not None else _planned(plan, shown, ground)
+        stage = Stage(motion, plan.robot, ground, title, GRASS if isinstance(plan.job, Field) else None)
     moments = np.clip(np.searchsorted(motion.time, shown - 1e-9), 0, len(motion) - 1)
     if target.suffix.lower() == ".json":
         from optplan.schema.files import write_atomically
 
-        write_atomically(target, _json(plan, motion, moments, fps, duration / lasting), overwrite=overwrite)
+        write_atomically(target, _json(plan, motion, moments, fps, factor), overwrite=overwrite)
         return
-    title = f"{plan.job.name} · {plan.robot.name}"
-    factor = duration / lasting
-    heading = title if factor < 1.05 else f"{title} · {factor:.3g}x"
-    stage = Stage(motion, plan.robot, ground, heading, grass=isinstance(plan.job, Field))
     _write(stage, moments, target, fps, overwrite, progress or silent)
 
 

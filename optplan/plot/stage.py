@@ -14,7 +14,7 @@ from optplan.domain.arrays import FloatArray
 from optplan.domain.drive import Motion
 from optplan.domain.path import RAISED
 from optplan.domain.robot import DiffDrive, Robot
-from optplan.plot.scene import FINE, GRASS, PAPER, SAND, Ground, robot_shapes
+from optplan.plot.scene import FINE, PAPER, SAND, Colours, Ground, robot_shapes
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -26,11 +26,13 @@ HEAD = 30
 class Stage:
     """Draws frame after frame. Only `frame` changes it, and only forwards in time."""
 
-    def __init__(self, motion: Motion, robot: Robot, ground: Ground, title: str, grass: bool = False) -> None:
+    def __init__(
+        self, motion: Motion, robot: Robot, ground: Ground, title: str, colours: Colours | None = None
+    ) -> None:
         from PIL import Image, ImageDraw, ImageFont
 
         self.motion, self.robot, self.ground = motion, robot, ground
-        self.colours = GRASS if grass else SAND if isinstance(robot.mobility, DiffDrive) else PAPER
+        self.colours = colours or (SAND if isinstance(robot.mobility, DiffDrive) else PAPER)
         size = (ground.width * FINE, ground.height * FINE)
         self.sheet = Image.new("RGB", size, self.colours.ground)
         self._pen = ImageDraw.Draw(self.sheet)

@@ -21,24 +21,16 @@ from optplan.domain.job import (
     FillRule,
     FillSettings,
     Job,
-    Note,
     Surface,
     turned,
 )
 from optplan.schema.base import VERSION, Angle, Length, Model, Point, Point3, Whole
+from optplan.schema.facades import FacadeModel, facade_from, facade_model
 from optplan.schema.files import write_atomically
+from optplan.schema.notes import NoteModel, note_models, notes_from
 from optplan.schema.options import FillModel
 
 Colour = Annotated[str, Entry(pattern="^#[0-9a-f]{6}$")]
-
-
-class NoteModel(Model):
-    """A line of the load report."""
-
-    kind: str
-    place: str
-    text: str
-    times: Whole = 1
 
 
 class CurveModel(Model):
@@ -114,21 +106,6 @@ class FieldModel(Model):
     notes: list[NoteModel] = Entry(default_factory=list)
 
 
-class FacadeModel(Model):
-    """A wall to wash, in metres."""
-
-    version: str = VERSION
-    kind: Literal["facade"] = "facade"
-    name: str
-    outline: list[Point] = Entry(min_length=3)
-    no_go: list[list[Point]] = Entry(default_factory=list)
-    stops: list[Point] | None = None
-    radius: Length = Entry(1.0, gt=0)
-    tau: float = 0.75
-    width: float = 2.0
-    notes: list[NoteModel] = Entry(default_factory=list)
-
-
 class SurfaceModel(Model):
     """A recorded surface, in metres."""
 
@@ -142,16 +119,6 @@ class SurfaceModel(Model):
 
 
 JobModel = Annotated[DrawingModel | FieldModel | FacadeModel | SurfaceModel, Entry(discriminator="kind")]
-
-
-def note_models(notes: tuple[Note, ...]) -> list[NoteModel]:
-    """Records of a load report."""
-    return [NoteModel(kind=n.kind, place=n.place, text=n.text, times=n.times) for n in notes]
-
-
-def notes_from(models: list[NoteModel]) -> tuple[Note, ...]:
-    """The load report that records describe."""
-    return tuple(Note(m.kind, m.place, m.text, m.times) for m in models)
 
 
 def job_from(model: DrawingModel | FieldModel | FacadeModel | SurfaceModel) -> Job:
@@ -172,9 +139,7 @@ def job_from(model: DrawingModel | FieldModel | FacadeModel | SurfaceModel) -> J
                 None if model.anchor is None else Anchor(**model.anchor.model_dump()),
             )
         case FacadeModel():
-            no_go = tuple(map(_array, model.no_go))
-            stops = _maybe(model.stops)
-            return Facade(model.name, _array(model.outline), no_go, stops, model.radius, model.tau, model.width, notes)
+            return facade_from(model)
         case SurfaceModel():
             return Surface(model.name, _array(model.points), _maybe(model.tool_axes), model.disc_radius, notes)
 
@@ -197,18 +162,7 @@ def job_model(job: Job) -> DrawingModel | FieldModel | FacadeModel | SurfaceMode
         case Field():
             return _field_model(job)
         case Facade():
-            return FacadeModel.model_validate(
-                {
-                    "name": job.name,
-                    "outline": job.outline.tolist(),
-                    "no_go": [ring.tolist() for ring in job.no_go],
-                    "stops": None if job.stops is None else job.stops.tolist(),
-                    "radius": job.radius,
-                    "tau": job.tau,
-                    "width": job.width,
-                    "notes": note_models(job.notes),
-                }
-            )
+            return facade_model(job)
         case Surface():
             return SurfaceModel.model_validate(
                 {

@@ -10,6 +10,7 @@ from pydantic import Field
 from optplan.domain.errors import located
 from optplan.domain.job import FillSettings
 from optplan.domain.options import ConnectOptions, CoverOptions, Options, OrderOptions, PageOptions, TimeOptions
+from optplan.domain.washing import WashOptions
 from optplan.schema.base import Angle, Duration, Jerk, Length, Model, SpecificPower, Speed
 
 
@@ -90,6 +91,22 @@ class TimeModel(Model):
     constant_speed: Speed | None = Field(None, description="one speed everywhere, to compare with")
 
 
+class WashModel(Model):
+    """How a facade is washed."""
+
+    pattern: str = Field("best", description="hexagon, square, brick, stretched or best")
+    fewest: str = Field("exact", description="pattern, minimal or exact: which circles are left out")
+    effort: Duration = Field(5.0, description="for the exact model of the fewest circles")
+    tolerance: Length = Field(0.0, description="the cover stays complete when every stop is off by up to this")
+    rule: str = Field("overlap", description="overlap, rows or none: which stops come before which")
+    direction: str = Field("up", description="up or down")
+    tau: float | None = Field(None, description="of the rule, in radii; default: the job's")
+    width: float | None = Field(None, description="of the rule, in radii; default: the job's")
+    horizontal: float = Field(1.0, description="weight of horizontal metres in the order")
+    travel: str = Field("straight", description="straight, around or lift: how no-go areas are passed")
+    lift: Length = Field(1.0, description="beyond the stand-off, where no-go areas are passed by lifting")
+
+
 class OptionsModel(Model):
     """All settings of a plan, a table for each stage."""
 
@@ -98,6 +115,7 @@ class OptionsModel(Model):
     order: OrderModel = Field(default_factory=OrderModel)
     connect: ConnectModel = Field(default_factory=ConnectModel)
     time: TimeModel = Field(default_factory=TimeModel)
+    wash: WashModel = Field(default_factory=WashModel)
 
 
 def options_from(model: OptionsModel) -> Options:
@@ -131,6 +149,7 @@ def options_from(model: OptionsModel) -> Options:
                 model.connect.curved_padding,
             ),
             TimeOptions(**model.time.model_dump()),
+            WashOptions(**model.wash.model_dump()),
         )
 
 
@@ -149,5 +168,6 @@ def options_model(options: Options) -> OptionsModel:
             "order": {**asdict(options.order), "heading": None if heading is None else f"{heading!r} rad"},
             "connect": {**asdict(options.connect), "corner": f"{options.connect.corner!r} rad"},
             "time": asdict(options.time),
+            "wash": asdict(options.wash),
         }
     )

@@ -21,7 +21,8 @@ from optplan.domain.stop import StopReason
 from optplan.domain.stroke import Stroke, Traversals
 from optplan.schema.base import VERSION, Model, Point, Point3, Whole, check_version, fault, parse_json
 from optplan.schema.files import read_bytes, write_atomically
-from optplan.schema.jobs import JobModel, NoteModel, job_from, job_model, note_models, notes_from
+from optplan.schema.jobs import JobModel, job_from, job_model
+from optplan.schema.notes import NoteModel, note_models, notes_from
 from optplan.schema.options import OptionsModel, options_from, options_model
 from optplan.schema.robots import CanvasModel, RobotModel, robot_from, robot_model
 
@@ -61,6 +62,7 @@ class CoverModel(Model):
     areas: list[AreaModel] = Entry(default_factory=list)
     precedence: list[tuple[Whole, Whole]] = Entry(default_factory=list)
     links: list[tuple[Whole, Whole, Whole, Whole]] = Entry(default_factory=list)
+    radii: list[float] = Entry(default_factory=list, description="of the circle that each stop washes")
     start: Point | None = None
     canvas: CanvasModel | None = None
     notes: list[NoteModel] = Entry(default_factory=list)
@@ -288,6 +290,7 @@ def _cover_model(cover: Cover) -> CoverModel:
         areas=areas,
         precedence=list(cover.precedence),
         links=list(cover.links),
+        radii=list(cover.radii),
         start=cover.start,
         canvas=None if canvas is None else CanvasModel(width=canvas.width, height=canvas.height, margin=canvas.margin),
         notes=note_models(cover.notes),
@@ -322,6 +325,7 @@ def _cover_from(model: CoverModel) -> Cover:
         canvas,
         notes_from(model.notes),
         tuple(model.links),
+        tuple(model.radii),
     )
 
 

@@ -83,8 +83,10 @@ class BoomModel(Model):
     kind: Literal["boom"] = "boom"
     speeds: tuple[Speed, Speed, Speed] = Field(description="across the wall, up the wall, away from it")
     acceleration: Acceleration
-    reach: Length
+    reach: Length = Field(description="of the arm, from its foot")
     dwell: Duration
+    standoff: Length = Field(0.0, description="of the arm's foot from the wall")
+    flow: float = Field(0.0, ge=0, description="water while it works, l/s")
 
 
 class ArmModel(Model):

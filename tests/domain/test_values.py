@@ -11,6 +11,7 @@ import pytest
 
 from optplan.domain.arrays import frozen_bools, frozen_floats, frozen_ints
 from optplan.domain.errors import InputError, LimitError, OptplanError, SolverError, located
+from optplan.domain.facade import Wall
 from optplan.domain.job import Curve, Drawing, Element, Facade, FieldSegment, FillSettings, Surface
 from optplan.domain.options import ConnectOptions, CoverOptions, OrderOptions, PageOptions, TimeOptions
 from optplan.domain.path import Path, Trajectory
@@ -186,9 +187,19 @@ BROKEN: list[Callable[[], object]] = [
     lambda: FieldSegment("f", array([0, 0]), array([1, 0]), center=array([0.2, 0]), sweep=1.0),
     lambda: FieldSegment("f", array([1, 0]), array([0, 1]), center=array([0, 0])),
     lambda: FieldSegment("f", array([1, 0]), array([0, 1]), center=array([0, 0]), sweep=math.nan),
-    lambda: Facade("f", array(BOX), radius=0),
-    lambda: Facade("f", array(BOX), tau=math.nan),
-    lambda: Facade("f", array(BOX), width=math.inf),
+    lambda: Facade("f", (Wall("w", array(BOX)),), radius=0),
+    lambda: Facade("f", (Wall("w", array(BOX)),), tau=math.nan),
+    lambda: Facade("f", (Wall("w", array(BOX)),), width=math.inf),
+    lambda: Facade("f", ()),
+    lambda: Facade("f", (Wall("w", array(BOX)), Wall("w", array(BOX)))),
+    lambda: Facade("f", (Wall("a", array(BOX)), Wall("b", array(BOX), up=array([0, 1, 0])))),
+    lambda: Wall("w", array(BOX)[:2]),
+    lambda: Wall("w", array([[0, 0], [1, 1], [1, 0], [0, 1]])),
+    lambda: Wall("w", array(BOX), (array(BOX) + 0.5,)),
+    lambda: Wall("w", array(BOX), stops=array([[0, math.nan]])),
+    lambda: Wall("w", array(BOX), across=array([1, 1, 0])),
+    lambda: Wall("w", array(BOX), plan=array([[0, 0], [1, 0], [1, -1]])),
+    lambda: Wall("w", array(BOX), plan=array([[0, 0], [0.1, 0]])),
     lambda: Surface("s", np.zeros((3, 3)), disc_radius=0),
     lambda: Surface("s", np.zeros((3, 3)), tool_axes=np.zeros((2, 3))),
     lambda: Surface("s", np.zeros((3, 3)), tool_axes=np.full((3, 3), 2.0)),
@@ -213,6 +224,8 @@ BROKEN: list[Callable[[], object]] = [
     lambda: Gantry(1, 1, math.inf),
     lambda: Boom((1, 1, 0), 1, 1, 1),
     lambda: Boom((1, 1, 1), 1, 1, -1),
+    lambda: Boom((1, 1, 1), 1, 1, 1, standoff=1),
+    lambda: Boom((1, 1, 1), 1, 1, 1, flow=-1),
     lambda: Arm(1, 1, 1, 0),
     lambda: Canvas(1, 2, 0.5),
     lambda: Canvas(1, math.inf),

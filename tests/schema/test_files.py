@@ -83,7 +83,7 @@ MOBILITIES: tuple[Mobility, ...] = (
     CAR.mobility,
     PLOTTER.mobility,
     DiffDrive(0.5, 0.1, 20.0, 40.0, 1 / 3, 1.0, True, 0.7, 0.3, 4.4),
-    Boom((0.1, 0.2, 1 / 3), 0.3, 1.1, 20.0),
+    Boom((0.1, 0.2, 1 / 3), 0.3, 1.1, 20.0, 1 / 3, 0.1),
     Arm(0.1, 0.2, 1 / 3, 1.5),
 )
 
@@ -230,7 +230,7 @@ def test_older_minor_versions_are_read(monkeypatch: pytest.MonkeyPatch, version:
     monkeypatch.setattr(base, "VERSION", "1.3")
     plan_from_json(_changed("version", value=version))
     with pytest.raises(InputError, match=r"reads 1\.0 to 1\.3"):
-        plan_from_json(_changed("version", value="1.4"))
+        plan_from_json(_changed("version", value="1.5"))
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "1", "null", '"x"', "[" * 100_000, "\ufeff{}", b"\xff\xff", b"\x00"])

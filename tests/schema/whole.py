@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from optplan.domain.facade import Wall
 from optplan.domain.job import (
     Anchor,
     Curve,
@@ -28,6 +29,7 @@ from optplan.domain.result import Area, Cover, Plan
 from optplan.domain.robot import Canvas
 from optplan.domain.stop import StopReason
 from optplan.domain.stroke import Stroke, Traversals
+from optplan.domain.washing import WashOptions
 from tests.strategies import RAKE, array, box
 
 NOTES = (Note("ignored", "path#a", "text", 3), Note("notice", "", "äöü"))
@@ -48,6 +50,9 @@ def jobs() -> dict[str, Job]:
         FieldSegment("s", array([1, THIRD]), array([1, THIRD]), spot=0.22, directed=True),
         FieldSegment("c", array([1, 0]), array([math.cos(2.1), math.sin(2.1)]), array([0, 0]), 2.1),
     )
+    stops = array([[3, 3], [4, THIRD]])
+    front = Wall("a", box(0, 0, 9, 9), (box(1, 1, 1, 1),), stops, array([1, THIRD, 0]), array([0.6, 0.8, 0]))
+    tower = Wall("b", box(0, 0, 1.2, 3), plan=array([[0, 0], [THIRD, 0], [1, -0.5], [1.3, -1]]))
     up = np.tile([0.6, 0.0, 0.8], (3, 1))
     return {
         "drawing": Drawing("d", elements, 0.001, (0.21, 0.297), NOTES),
@@ -61,9 +66,9 @@ def jobs() -> dict[str, Job]:
             0.1,
             Anchor(52.5, 13.25, THIRD),
         ),
-        "facade": Facade("w", box(0, 0, 9, 9), (box(1, 1, 1, 1),), array([[3, 3], [4, THIRD]]), 0.9, 0.7, 1.9, NOTES),
+        "facade": Facade("w", (front, tower), 0.9, 0.7, 1.9, box(-9, 0, 20, 20), NOTES),
         "bare field": Field("f", segments[:1]),
-        "bare facade": Facade("w", box(0, 0, 9, 9)),
+        "bare facade": Facade("w", (Wall("wall", box(0, 0, 9, 9)),)),
         "surface": Surface("s", np.arange(9.0).reshape(3, 3) / 7, up, 0.03, NOTES),
         "bare surface": Surface("s", np.arange(9.0).reshape(3, 3)),
     }
@@ -83,6 +88,7 @@ OPTIONS = Options(
     OrderOptions("search", "euclid", 2.5, 100, 7, (1.5, -THIRD), 12, heading=THIRD, drying=2.5, keep="order"),
     ConnectOptions(math.radians(33.3), reversing=True),
     TimeOptions(0.3, THIRD, 2.5, THIRD),
+    WashOptions("brick", "minimal", 2.5, THIRD, "rows", "down", THIRD, 1.9, 1.5, "lift", 0.7),
 )
 
 
@@ -94,7 +100,9 @@ def plan() -> Plan:
         Stroke("s3", array([[0, 0, 1], [1, 0, THIRD]]), 1, normals=array([[0, 0, 1], [0.6, 0, 0.8]])),
     )
     areas = (Area("a", (box(0, 0, 5, 5), box(1, 1, 1, THIRD)), 2),)
-    cover = Cover(strokes, areas, ((0, 1), (0, 2)), (0.5, THIRD), Canvas(20.0, 10.0, 0.5), NOTES)
+    cover = Cover(
+        strokes, areas, ((0, 1), (0, 2)), (0.5, THIRD), Canvas(20.0, 10.0, 0.5), NOTES, radii=(1.0, THIRD, 2.0)
+    )
     trace = (TracePoint(0.1, math.inf, -math.inf), TracePoint(0.2, 9.0, 3.0))
     ordering = Ordering(
         np.array([0, 3]), 9.0, 3.0, Status.FEASIBLE, StopReason.TIME, "search", 7, 2.5, 100, "because", trace, "s"
