@@ -35,6 +35,7 @@ bench: .venv/.ready
 	-$(RUN)python -m benchmarks.connectors
 	-$(RUN)python -m benchmarks.driving
 	-$(RUN)python -m benchmarks.speed
+	-$(RUN)python -m benchmarks.facades
 	$(RUN)python -m benchmarks.ordering
 
 format: .venv/.ready

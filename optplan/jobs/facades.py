@@ -80,13 +80,12 @@ def read_dxf(file: Path, unit: float | None) -> Facade:
     if not file.is_file():
         raise InputError("does not exist; expected a DXF file", str(file))
     notes: list[Note] = []
+    convert: Any = units.conversion_factor
     try:
         document: Any = ezdxf.readfile(file)  # type: ignore[attr-defined]
         space = document.modelspace()
         stated: Any = document.header.get("$INSUNITS", 0)
-        factor = (
-            unit if unit is not None else units.conversion_factor(units.InsertUnits(stated), units.M) if stated else 1.0
-        )
+        factor = unit if unit is not None else convert(stated, units.M) if stated else 1.0
         rings: list[tuple[str, FloatArray]] = []
         other: dict[str, int] = {}
         for entity in space:
