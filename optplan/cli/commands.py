@@ -736,7 +736,7 @@ def instances(json: Json = False) -> None:
         output.print_json([{"name": name, "file": file} for name, file in known])
     else:
         output.print_table(("instance", "file"), known)
-        print("drawings: optplan plan; ordering: optplan order; washing: optplan compare, which takes them all")
+        print("drawings, facades, washing: optplan plan; ordering: optplan order; optplan compare takes them all")
 
 
 @app.command()

@@ -48,8 +48,8 @@ def verify_facade(plan: Plan, job: Facade) -> Report:
     samples = integrate(path, 0.01)
     checks: list[Check] = [_continuity.gaps(path, samples)]
     figures: Figures = []
-    if cover is None or not isinstance(robot.mobility, Boom):
-        why = "the plan has no stops" if cover is None else "the robot is no boom lift"
+    if cover is None or not cover.strokes or not isinstance(robot.mobility, Boom):
+        why = "the robot is no boom lift" if cover is not None and cover.strokes else "the plan has no stops"
         return Report((*checks, *unchecked(["strokes", "coverage", "reach", "order"], why)), ())
     boom, placed = robot.mobility, on_walls(job, cover)
     done, deviation, _ = _strokes.strokes(path, samples, cover, GAP)
