@@ -225,7 +225,7 @@ def demo(
             folder = Path(f"optplan-demo-{number}")
     options = settings_of({}, {})
     _plan_and_write(
-        file, robot, options, folder, ["stops"] if "facade" in str(file) else ["csv", "txt"], force, quiet, json
+        file, robot, options, folder, ["stops"] if file.parent.name == "facades" else ["csv", "txt"], force, quiet, json
     )
 
 
