@@ -36,6 +36,7 @@ bench: .venv/.ready
 	-$(RUN)python -m benchmarks.fields
 	-$(RUN)python -m benchmarks.driving
 	-$(RUN)python -m benchmarks.speed
+	-$(RUN)python -m benchmarks.facades
 	$(RUN)python -m benchmarks.ordering
 
 format: .venv/.ready

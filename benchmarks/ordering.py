@@ -112,11 +112,6 @@ def proofs() -> Iterator[Row]:
         ("R.500.100.30", "ordering/sop/R.500.100.30.sop", "beam", 1.0),
         ("R.400.100.60", "ordering/sop/R.400.100.60.sop", "beam", 1.0),
         ("R.200.1000.30", "ordering/sop/R.200.1000.30.sop", "beam", 1.0),
-        ("washing case 1, cuts", "washing/case1.json", "cuts", 2.0),
-        ("washing case 2, cuts", "washing/case2.json", "cuts", 5.0),
-        ("washing case 1, best method", "washing/case1.json", "beam", 1.0),
-        ("washing case 2, best method", "washing/case2.json", "beam", 1.0),
-        ("washing, 273 circles", "washing/large273.json", "beam", 3.0),
     ):
         if (DATA / source).is_file():
             yield proved(f"{what} proved by {solver}", [load_case(DATA / source).problem], solver, target)

@@ -103,7 +103,22 @@ def field() -> None:
     op.animate(plan, FOLDER / "field.gif", fps=12, size=6, overwrite=True)
 
 
-PICTURES = {"convergence": convergence, "square": square, "drawings": drawings, "film": film, "field": field}
+def facade() -> None:
+    """A facade with windows, and a house in space."""
+    for name, file in (("windows", "facade.png"), ("house", "house.png")):
+        options = op.Options(order=op.OrderOptions(seconds=20))
+        plan = op.plan(op.read(op.instance(f"facades/{name}")), "boom-washer", options)
+        op.draw(plan, FOLDER / file, overwrite=True, dpi=80, in_space=name == "house")
+
+
+PICTURES = {
+    "facade": facade,
+    "convergence": convergence,
+    "square": square,
+    "drawings": drawings,
+    "film": film,
+    "field": field,
+}
 
 if __name__ == "__main__":
     for picture in sys.argv[1:] or PICTURES:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from optplan.domain.errors import InputError
+from optplan.domain.facade import Facade
 from optplan.domain.options import Options
 from optplan.domain.progress import ProgressCallback
 from optplan.domain.result import Cover, Plan
@@ -38,10 +39,12 @@ def resumed(
 
     Raises
     ------
-    InputError : the plan has no order, or fewer strokes
+    InputError : the plan has no order, or fewer strokes, or is that of a facade
     """
     if plan.cover is None or plan.visits is None:
         raise InputError("the plan has no order yet; run the stage order first")
+    if isinstance(plan.job, Facade):
+        raise InputError("a facade's stops are not resumed: go on with those that are left (optplan export --to stops)")
     visits = plan.visits
     if not 0 <= first < max(len(visits), 1):
         raise InputError(f"{first} strokes are done, of a plan of {len(visits)}; expected 0..{len(visits) - 1}")

@@ -177,12 +177,18 @@ def test_judge_checks_what_the_solver_claims(good: Plan) -> None:
 
 
 def test_judge_sees_moves_over_windows() -> None:
-    plan = planned(flat(), fewest="minimal", pattern="hexagon", rule="none")
-    around = replace(plan.options, wash=replace(plan.options.wash, travel="around"))
+    """Two stops beside a window: straight over it is 1.6 m, around it none."""
+    outline = array([[0, 0], [5, 0], [5, 4.5], [0, 4.5]])
+    job = Facade("w", (Wall("wall", outline, (WINDOW,), array([[1.0, 2.0], [4.0, 2.0]])),))
+    plan = planned(job, rule="none")
     assert plan.report is not None
-    assert plan.report.checks
-    over = next(check.value for check in plan.report.checks if check.name == "no-go")
-    assert over == 0 or "no-go" in _spoilt(plan, options=around)
+    over = {check.name: check for check in plan.report.checks}["no-go"]
+    assert over.value == pytest.approx(1.6)
+    assert over.verdict.value == "noted"
+    for travel in ("around", "lift"):
+        asked = replace(plan.options, wash=replace(plan.options.wash, travel=travel))
+        assert "no-go" in _spoilt(plan, options=asked)
+        assert "no-go" not in _spoilt(planned(job, rule="none", travel=travel))
 
 
 @pytest.mark.parametrize("kind", JOBS)
@@ -394,3 +400,56 @@ def test_limits_are_limit_errors() -> None:
     many = np.column_stack([np.cos(np.linspace(0, 6, 4000)), np.sin(np.linspace(0, 6, 4000))])
     with pytest.raises(InputError, match="at most"):
         Wall("w", many)
+
+
+def test_start_counts_in_the_costs_of_the_wall_it_leads_to() -> None:
+    """The start lies before the first wall; the first stop may be on another one."""
+    job = corner()
+    for metric in ("euclid", "time"):
+        order = OrderOptions("search", metric, iterations=200, start=(4.7, 0.0))
+        plan = op.plan(job, BOOM, Options(order=order, wash=WashOptions(fewest="minimal", rule="none")))
+        assert failed(plan) == []
+        assert plan.path is not None
+        assert plan.path.start[0] == pytest.approx([4.7, -0.75, 0.0])
+
+
+def test_what_facades_do_not_do_is_said(good: Plan) -> None:
+    with pytest.raises(InputError, match="not resumed"):
+        op.resumed(good, 3, good.options)
+    with pytest.raises(InputError, match="facades only"):
+        op.draw(op.plan(op.read('<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H9" stroke="black"/></svg>')),
+                "never.png", in_space=True)  # fmt: skip
+
+
+def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    from optplan.cli import main
+
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words: str) -> int:
+        monkeypatch.setattr("sys.argv", ["optplan", *words])
+        with pytest.raises(SystemExit) as end:
+            main()
+        return int(end.value.code or 0)
+
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40"><path d="M0 0H50V40H0Z"/>{}</svg>'
+    Path("wall.svg").write_text(svg.format('<rect x="20" y="10" width="15" height="15"/>'))
+    flags = ["--as", "facade", "--unit", "10cm", "--fewest", "minimal", "--iterations", "100", "-q"]
+    assert run("plan", "wall.svg", *flags, "-e", "stops") == 0
+    names = {file.name for file in Path("wall-plan").iterdir()}
+    assert names == {"plan.json", "picture.png", "picture.svg", "building.png", "plan.stops.csv"}
+    assert "planned and verified" in capsys.readouterr().out
+    assert run("check", "wall-plan/plan.json") == 0
+    assert run("show", "wall-plan/plan.json", "--3d", "-o", "space.png") == 0
+    assert run("order", "wall-plan/plan.json", "--metric", "time", "-o", "timed.json", "--iterations", "50", "-q") == 0
+    assert " s between strokes" in capsys.readouterr().out
+    assert run("plan", "wall.svg", *flags, "-o", "wall-plan") == 2
+    Path("wall.svg").write_text(svg.format('<rect x="40" y="10" width="15" height="15"/>'))
+    assert run("plan", "wall.svg", *flags, "-o", "other") == 2
+    assert "crosses the outline" in capsys.readouterr().err
+    assert not Path("other").exists()
+    case = json.loads(op.instance("washing/case1").read_text())
+    case["circles"] = case["circles"][:-3]
+    Path("case.json").write_text(json.dumps(case))
+    assert run("plan", "case.json", "--iterations", "10", "-q", "-o", "case") == 1
+    assert "A CHECK FAILED" in capsys.readouterr().out

@@ -76,6 +76,7 @@ from optplan.cli.settings import (
     Tracker,
     TransitSpeed,
     Travel,
+    Turned,
     Unit,
     Water,
     WorkSpeed,
@@ -192,6 +193,7 @@ def plan_command(
     constant_speed: ConstantSpeed = None,
     pattern: Pattern = None,
     fewest: Fewest = None,
+    turned: Turned = None,
     placement: Placement = None,
     rule: Rule = None,
     water: Water = None,
@@ -238,7 +240,7 @@ def demo(
     field = kind == "field"
     options = settings_of({}, {"time_limit": "6s", "avoid": 5.0} if field else {})
     formats = ["csv", "schedule", "messages", "pdf"] if field else ["csv", "txt"]
-    if "facade" in str(file):
+    if file.parent.name == "facades":
         formats = ["stops"]
     _plan_and_write(file, robot, options, folder, formats, force, quiet, json, film=field)
 
@@ -439,6 +441,7 @@ def cover(
     keep: Keep = None,
     pattern: Pattern = None,
     fewest: Fewest = None,
+    turned: Turned = None,
     placement: Placement = None,
     rule: Rule = None,
     water: Water = None,
@@ -765,7 +768,7 @@ def instances(json: Json = False) -> None:
         output.print_json([{"name": name, "file": file} for name, file in known])
     else:
         output.print_table(("instance", "file"), known)
-        print("drawings: optplan plan; ordering: optplan order; washing: optplan compare, which takes them all")
+        print("drawings, facades, washing: optplan plan; ordering: optplan order; optplan compare takes them all")
 
 
 app.command("field")(field_command)

@@ -102,6 +102,7 @@ Kind = Annotated[str | None, typer.Option("--as", help="What the file is: drawin
 Unit = Annotated[str | None, typer.Option("--unit", help="One unit of a facade's drawing, e.g. 1cm; default: 1m.")]
 Pattern = Annotated[str | None, typer.Option(help="Of washing circles: hexagon, square, brick, stretched or best.")]
 Fewest = Annotated[str | None, typer.Option(help="Circles left out: pattern (useless ones), minimal or exact.")]
+Turned = Annotated[bool | None, typer.Option("--turned/--level", help="Patterns may be turned, or rows are level.")]
 Placement = Annotated[
     str | None, typer.Option("--placement", help="The cover stays complete though stops are off by this, e.g. 10cm.")
 ]
@@ -161,6 +162,7 @@ _PLACES = {
     "constant_speed": ("time", "constant_speed"),
     "pattern": ("wash", "pattern"),
     "fewest": ("wash", "fewest"),
+    "turned": ("wash", "turned"),
     "placement": ("wash", "tolerance"),
     "rule": ("wash", "rule"),
     "water": ("wash", "direction"),

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from optplan.coverage import cover
 from optplan.domain.errors import InputError, located
+from optplan.domain.facade import Facade
 from optplan.domain.options import Options
 from optplan.domain.ordering import OrderingProblem
 from optplan.instances import shipped_or_file
@@ -47,7 +48,8 @@ def load_case(source: str | Path, robot: str | Path = "beach-rake", options: Opt
     ----------
     source : a drawing, a plan or a JSON job, a library file (.tsp, .atsp, .sop, .gtsp, .pcglns), a JSON file of washing
         circles, or the name of a shipped instance
-    robot, options : for drawings and jobs: whose strokes they become, and under which metric
+    robot, options : for drawings and jobs: whose strokes they become, and under which metric; where nothing else is
+        asked for, facades are washed by the boom washer
 
     Raises
     ------
@@ -73,8 +75,8 @@ def load_case(source: str | Path, robot: str | Path = "beach-rake", options: Opt
 def _of_job(file: Path, robot: str | Path, options: Options) -> OrderingProblem:
     from optplan.jobs.reading import read
 
-    machine = load_robot(robot)
     job = read(file)
+    machine = load_robot("boom-washer" if isinstance(job, Facade) and robot == "beach-rake" else robot)
     return problem_of(job, cover(job, machine, options), machine, options)[1]
 
 

@@ -15,7 +15,8 @@ from optplan.geometry.paths import ends
 
 
 def profile_stops(path: Path, job: Facade, cover: Cover, robot: Robot, options: Options) -> Trajectory:
-    """The fastest speeds along a path of straight moves and stops. A move's axes are those of the wall it leaves.
+    """The fastest speeds along a path of straight moves and stops. A move's axes are those of the wall it leaves; of
+    the first one, where there is a start, those of the wall it comes to.
 
     Raises InputError for limits that a boom lift has not.
     """
@@ -29,7 +30,7 @@ def profile_stops(path: Path, job: Facade, cover: Cover, robot: Robot, options: 
     travel = Travel(job, cover, robot, options)
     stops = np.flatnonzero(path.stroke >= 0)
     before = np.searchsorted(stops, np.arange(len(path)), side="right") - 1
-    first = travel.start if travel.start is not None else int(path.stroke[stops[0]])
+    first = int(path.stroke[stops[0]])
     origin = np.where(before >= 0, path.stroke[stops[before]], first)
     moving = np.flatnonzero(path.length > 0)
     steps = ends(path).position - path.start

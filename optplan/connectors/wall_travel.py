@@ -162,7 +162,9 @@ class Travel:
             return math.inf
         steps = np.diff(way, axis=0)
         steps = steps[np.linalg.norm(steps, axis=1) > SAME]
-        return float(self._of_steps(steps, np.full(len(steps), i)).sum()) if len(steps) else 0.0
+        # where it stands at first no axis points anywhere yet: those of the wall it goes to count
+        origin = np.full(len(steps), j if i == self.start else i)
+        return float(self._of_steps(steps, origin).sum()) if len(steps) else 0.0
 
     def _of_steps(self, steps: FloatArray, origin: IntArray) -> FloatArray:
         """(k,) costs of straight lines (k, 3) of moves that begin at these stops (k,)."""

@@ -47,7 +47,10 @@ def fewest_circles(area: Any, radius: float, options: WashOptions) -> Circles:
         )
     size = radius * (1 - MARGIN)
     patterns = PATTERNS if options.pattern == "best" else (options.pattern,)
-    laid = sorted((one for name in patterns for one in placements(area, size, name)), key=lambda one: len(one.centres))
+    laid = sorted(
+        (one for name in patterns for one in placements(area, size, name, turned=options.turned)),
+        key=lambda one: len(one.centres),
+    )
     tried = [(one, faces_of(area, one.centres, size)) for one in laid[: TRIED if options.fewest != "pattern" else 1]]
     if options.fewest == "pattern":
         one, faces = tried[0]

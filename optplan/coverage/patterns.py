@@ -99,7 +99,10 @@ def plain(area: Any, radius: float, pattern: str) -> Laid:
 
 
 def placements(area: Any, radius: float, pattern: str, *, turned: bool = True) -> list[Laid]:
-    """A pattern laid at many places and turns, those that touch the area with the fewest circles first."""
+    """A pattern laid at many places and turns, those that touch the area with the fewest circles first.
+
+    Without `turned` rows stay level.
+    """
     import shapely
 
     shapely.prepare(area)
@@ -109,7 +112,7 @@ def placements(area: Any, radius: float, pattern: str, *, turned: bool = True) -
         made = [
             lay(area, radius, pattern, turn, (a, b), cell)
             for cell in cells
-            for turn in (0, 90)
+            for turn in ((0, 90) if turned else (0,))
             for a in shares
             for b in shares
         ]

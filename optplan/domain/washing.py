@@ -25,6 +25,7 @@ class WashOptions:
         nearer to or further from each other as it fits the wall), or "best": fewest circles
     fewest : "pattern" leaves out circles that wash nothing; "minimal" also, one by one, those whose part others wash;
         "exact" asks a set-cover model for the fewest of its candidate positions
+    turned : whether patterns may be turned: fewer circles at times, but without level rows the water asks for more way
     effort : s for the exact model
     tolerance : m; the cover stays complete when every stop is off by up to this
     rule : "overlap": a circle after the lower ones beside it; "rows": row after row, as published; "none"
@@ -37,6 +38,7 @@ class WashOptions:
 
     pattern: str = "best"
     fewest: str = "exact"
+    turned: bool = False
     effort: float = 5.0
     tolerance: float = 0.0
     rule: str = "overlap"
@@ -54,6 +56,8 @@ class WashOptions:
         ):
             if getattr(self, name) not in known:
                 raise InputError(f"wash {name} is {getattr(self, name)!r}; expected one of {', '.join(known)}")
+        if not isinstance(self.turned, bool):
+            raise InputError(f"wash turned is {self.turned!r}; expected true or false")
         for name in ("effort", "horizontal", "lift"):
             value = getattr(self, name)
             if isinstance(value, bool) or not (1e-6 <= value <= MAX_NUMBER):

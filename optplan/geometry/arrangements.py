@@ -54,8 +54,7 @@ def faces_of(area: Any, centres: FloatArray, radius: float) -> Faces:
 def holders(points: FloatArray, centres: FloatArray, radius: float) -> Any:
     """(m, n) 0 or 1: which circles hold which points (m, 2)."""
     if len(points) == 0 or len(centres) == 0:
-        none: Any = csr_array((len(points), len(centres)), dtype=np.int8)
-        return none
+        return csr_array(np.zeros((len(points), len(centres)), dtype=np.int8))
     found: Any = cKDTree(centres).query_ball_point(points, radius, return_sorted=True)
     counts = np.array([len(row) for row in found])
     columns = np.concatenate([np.asarray(row, dtype=np.int64) for row in found]) if counts.sum() else np.zeros(0, int)

@@ -75,20 +75,17 @@ def read_dxf(file: Path, unit: float | None) -> Facade:
         import ezdxf
         from ezdxf import units
         from ezdxf.path import make_path
-
-        known: Any = units  # its enumerations are exported, though not by their stubs
     except ImportError:
         raise InputError("cannot be read without ezdxf: pip install optplan[dxf]", str(file)) from None
     if not file.is_file():
         raise InputError("does not exist; expected a DXF file", str(file))
     notes: list[Note] = []
+    convert: Any = units.conversion_factor
     try:
         document: Any = ezdxf.readfile(file)  # type: ignore[attr-defined]
         space = document.modelspace()
         stated: Any = document.header.get("$INSUNITS", 0)
-        factor = (
-            unit if unit is not None else known.conversion_factor(known.InsertUnits(stated), known.M) if stated else 1.0
-        )
+        factor = unit if unit is not None else convert(stated, units.M) if stated else 1.0
         rings: list[tuple[str, FloatArray]] = []
         other: dict[str, int] = {}
         for entity in space:

@@ -48,8 +48,8 @@ def verify_facade(plan: Plan, job: Facade) -> Report:
     samples = integrate(path, 0.01)
     checks: list[Check] = [_continuity.gaps(path, samples)]
     figures: Figures = []
-    if cover is None or not isinstance(robot.mobility, Boom):
-        why = "the plan has no stops" if cover is None else "the robot is no boom lift"
+    if cover is None or not cover.strokes or not isinstance(robot.mobility, Boom):
+        why = "the robot is no boom lift" if cover is not None and cover.strokes else "the plan has no stops"
         return Report((*checks, *unchecked(["strokes", "coverage", "reach", "order"], why)), ())
     boom, placed = robot.mobility, on_walls(job, cover)
     done, deviation, _, _ = _strokes.strokes(path, samples, cover, GAP)
@@ -214,7 +214,7 @@ def _seconds(part: list[float], boom: Boom, options: Options) -> float:
 
 
 def _no_go(job: Facade, path: Path, samples: Samples, placed: list[OnWall], options: Options) -> Check:
-    """Metres that moves go close before no-go areas, but for those that a stop at their ends stands before."""
+    """Metres that moves go close before no-go areas; none to be avoided where a stop at their ends stands."""
     import shapely
 
     metres, spot = 0.0, None
@@ -226,7 +226,8 @@ def _no_go(job: Facade, path: Path, samples: Samples, placed: list[OnWall], opti
         wall = job.walls[first.wall]
         ends = shapely.points([[first.x, first.y], [last.x, last.y]])
         holes = shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in wall.no_go])
-        parts = [part for part in shapely.get_parts(holes) if not shapely.contains(part, ends).any()]
+        own = options.wash.travel != "straight"
+        parts = [part for part in shapely.get_parts(holes) if not (own and shapely.contains(part, ends).any())]
         for row in range(a + 1, b):
             line = _line_on(wall, path.start[row], samples.ends[row], first.standoff)
             if line is None:

@@ -96,6 +96,7 @@ class WashModel(Model):
 
     pattern: str = Field("best", description="hexagon, square, brick, stretched or best")
     fewest: str = Field("exact", description="pattern, minimal or exact: which circles are left out")
+    turned: bool = Field(False, description="patterns may be turned: fewer circles, but no level rows")
     effort: Duration = Field(5.0, description="for the exact model of the fewest circles")
     tolerance: Length = Field(0.0, description="the cover stays complete when every stop is off by up to this")
     rule: str = Field("overlap", description="overlap, rows or none: which stops come before which")

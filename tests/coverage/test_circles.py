@@ -129,6 +129,14 @@ def test_fewest_is_that_of_enumeration() -> None:
         assert member[:, found].any(axis=1).all()
 
 
+def test_rows_are_level_unless_they_may_turn() -> None:
+    for turned in (False, True):
+        for pattern in PATTERNS:
+            laid = placements(WALL, 0.9, pattern, turned=turned)
+            assert turned or all(one.turn == 0 for one in laid)
+            assert not turned or {one.turn for one in laid} > {0}
+
+
 @pytest.mark.parametrize("fewest", ["pattern", "minimal", "exact"])
 @pytest.mark.parametrize("area", [WALL, NOTCHED], ids=["wall", "notched"])
 def test_walls_are_washed(area: shapely.Polygon, fewest: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -168,10 +169,9 @@ def test_json_is_either_one_wall_or_several(tmp_path: Path) -> None:
     head: dict[str, object] = {"version": "1.5", "kind": "facade", "name": "f"}
     file.write_text(json.dumps({**head, "outline": OUTLINE, "no_go": [WINDOW]}))
     assert _areas(op.read(file)) == pytest.approx([60, 4])
-    wrong: list[dict[str, object]] = [{}, {"outline": OUTLINE, "walls": [{"outline": OUTLINE}]}, {"walls": []}]
-    wrong.append({"no_go": [WINDOW]})
-    for bad in wrong:
-        file.write_text(json.dumps(head | bad))
+    wrong: list[dict[str, Any]] = [{}, {"outline": OUTLINE, "walls": [{"outline": OUTLINE}]}, {"walls": []}]
+    for bad in [*wrong, {"no_go": [WINDOW]}]:
+        file.write_text(json.dumps({**head, **bad}))
         with pytest.raises(InputError):
             op.read(file)
 

@@ -88,7 +88,7 @@ OPTIONS = Options(
     OrderOptions("search", "euclid", 2.5, 100, 7, (1.5, -THIRD), 12, heading=THIRD, drying=2.5, keep="order"),
     ConnectOptions(math.radians(33.3), reversing=True),
     TimeOptions(0.3, THIRD, 2.5, THIRD),
-    WashOptions("brick", "minimal", 2.5, THIRD, "rows", "down", THIRD, 1.9, 1.5, "lift", 0.7),
+    WashOptions("brick", "minimal", True, 2.5, THIRD, "rows", "down", THIRD, 1.9, 1.5, "lift", 0.7),
 )
 
 

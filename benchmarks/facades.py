@@ -1,0 +1,70 @@
+"""Figures of facades: proofs of the order of stops, quick orders, and few circles."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import sys
+from collections.abc import Iterator
+
+from benchmarks.ordering import proved, warm_up
+from benchmarks.table import Row, print_rows
+from optplan.compare import load_case
+from optplan.coverage.circles import fewest_circles
+from optplan.domain.stop import StopRule
+from optplan.domain.washing import WashOptions
+from optplan.ordering import solve
+
+
+def proofs() -> Iterator[Row]:
+    """Processor seconds until the shortest order is proved, from nothing."""
+    for name, solver, target in (
+        ("case1", "beam", 1.0),
+        ("case2", "beam", 1.0),
+        ("case1", "cuts", 2.0),
+        ("case2", "cuts", 5.0),
+        ("large273", "beam", 3.0),
+    ):
+        case = load_case(f"washing/{name}")
+        yield proved(f"{name}, {case.problem.clusters} circles, proved by {solver}", [case.problem], solver, target)
+    case = load_case("washing/large539")
+    answer = solve(case.problem, "dp", StopRule(seconds=60))
+    yield Row("large539, 539 circles, gap after 60 s", 100 * answer.gap, 0.3, "%", f"{answer.cost:.3f} m")
+
+
+def quick() -> Iterator[Row]:
+    """How soon an order within half a percent of the best one is there: the better of two methods."""
+    for name in ("case1", "case2"):
+        case = load_case(f"washing/{name}")
+        times = {}
+        for solver in ("beam", "search"):
+            solve(case.problem, solver, StopRule(seconds=0.5))
+            runs = [solve(case.problem, solver, StopRule(seconds=0.5)).trace for _ in range(5)]
+            close = [[p.seconds for p in run if p.cost <= 1.005 * case.best_known] for run in runs]
+            times[solver] = statistics.median(min(found, default=math.inf) for found in close)
+        best = min(times, key=lambda solver: times[solver])
+        yield Row(f"{name}, an order within 0.5 %, by {best}", 1000 * times[best], 20.0, "ms")
+
+
+def circles() -> Iterator[Row]:
+    """How many circles more than are proved to be needed, of the candidate positions."""
+    import shapely
+
+    wall = shapely.box(0, 0, 22, 18)
+    windows = shapely.union_all([shapely.box(x, y, x + 2.2, y + 2.4) for x in (2, 8, 14, 18.5) for y in (2, 7.5, 13)])
+    found = fewest_circles(wall.difference(windows), 1.0, WashOptions(turned=True, effort=30.0))
+    count = len(found.centres)
+    remark = f"{count} circles of {found.candidates} positions, {found.bound} or more needed"
+    yield Row("a wall with twelve windows, circles above the bound", count - found.bound, 1.0, "", remark)
+
+
+def figures() -> Iterator[Row]:
+    """All of them."""
+    warm_up()
+    yield from quick()
+    yield from proofs()
+    yield from circles()
+
+
+if __name__ == "__main__":
+    sys.exit(0 if print_rows(figures()) else 1)
