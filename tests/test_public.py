@@ -14,7 +14,7 @@ import pytest
 import optplan as op
 from optplan.compare import load_case
 from optplan.domain.errors import InputError
-from optplan.domain.job import Drawing
+from optplan.domain.job import Drawing, Facade
 from optplan.instances import instance, instance_names
 
 PACKAGE = Path(op.__file__).parent
@@ -75,6 +75,8 @@ def test_instances_are_found_by_both_names() -> None:
         assert instance(name.split("/")[1]) == file
         if name.startswith("drawings/"):
             assert isinstance(op.read(file), Drawing)
+        elif name.startswith("facades/"):
+            assert isinstance(op.read(file), Facade)
         else:
             assert math.isfinite(load_case(name).best_known)
 
