@@ -391,7 +391,7 @@ def test_what_a_boom_has_not_is_refused() -> None:
             op.plan(job, BOOM, replace(options, wash=WashOptions(fewest="pattern")))
     drawing = op.read(op.instance("drawings/lion"))
     with pytest.raises(InputError, match="time"):
-        op.plan(drawing, "beach-rake", Options(order=OrderOptions(metric="time")))
+        op.plan(drawing, "pen-plotter", Options(order=OrderOptions(metric="time")))
 
 
 def test_limits_are_limit_errors() -> None:

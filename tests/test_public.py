@@ -14,7 +14,7 @@ import pytest
 import optplan as op
 from optplan.compare import load_case
 from optplan.domain.errors import InputError
-from optplan.domain.job import Drawing, Field
+from optplan.domain.job import Drawing, Facade, Field
 from optplan.instances import instance, instance_names
 
 PACKAGE = Path(op.__file__).parent
@@ -77,6 +77,8 @@ def test_instances_are_found_by_both_names() -> None:
             assert isinstance(op.read(file), Drawing)
         elif name.startswith("fields/"):
             assert isinstance(op.read(file), Field)
+        elif name.startswith("facades/"):
+            assert isinstance(op.read(file), Facade)
         else:
             assert math.isfinite(load_case(name).best_known)
 

@@ -94,7 +94,7 @@ def _circles(file: Path, data: dict[str, object]) -> Case:
         rule = data.get("rule", {})
         numbers = {name: rule.get(name) if isinstance(rule, dict) else None for name in ("tau", "d")}
         radius, optimum = data.get("radius"), data.get("optimum")
-        optimum = math.inf if optimum is None else optimum
+        optimum = data.get("best_known", math.inf) if optimum is None else optimum
         tau = TAU if numbers["tau"] is None else numbers["tau"]
         distance = DISTANCE if numbers["d"] is None else numbers["d"]
         for name, value in (("radius", radius), ("optimum", optimum), ("rule.tau", tau), ("rule.d", distance)):
