@@ -27,7 +27,7 @@ from optplan.judge import verify
 from optplan.ordering import solve
 from optplan.problem import problem_of
 from optplan.refilling import with_refills, without_refills
-from optplan.robots import load_robot
+from optplan.robots import USUAL_ROBOTS, load_robot
 from optplan.timing.fastest import profile
 
 STAGES = ("cover", "order", "connect", "time", "verify")
@@ -36,7 +36,7 @@ STAGES = ("cover", "order", "connect", "time", "verify")
 
 def plan(
     job: Job,
-    robot: str | Path | Robot = "beach-rake",
+    robot: str | Path | Robot | None = None,
     options: Options | None = None,
     progress: ProgressCallback | None = None,
     stop: StopRule | None = None,
@@ -46,7 +46,7 @@ def plan(
     Parameters
     ----------
     job : what is to be done, from `optplan.read`
-    robot : name of a preset, path of a robot file, or a robot
+    robot : name of a preset, path of a robot file, or a robot; None: the preset that suits the job
     options : settings of every stage
     progress : called with what each stage has reached
     stop : when ordering stops; default: what the options say
@@ -62,7 +62,8 @@ def plan(
     """
     if not isinstance(job, Job):
         raise InputError(f"the job is {job!r:.60}; expected what optplan.read returns")
-    return plan_from(Plan(job, load_robot(robot), options or Options()), "cover", progress, stop)
+    machine = load_robot(USUAL_ROBOTS[type(job).__name__] if robot is None else robot)
+    return plan_from(Plan(job, machine, options or Options()), "cover", progress, stop)
 
 
 def plan_from(

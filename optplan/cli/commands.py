@@ -13,7 +13,6 @@ from optplan.cli import output
 from optplan.cli.fields import field_command
 from optplan.cli.fleets import fleet_command
 from optplan.cli.settings import (
-    USUAL_ROBOTS,
     Animate,
     Areas,
     Avoid,
@@ -88,6 +87,7 @@ from optplan.cli.settings import (
     with_entries,
 )
 from optplan.domain.errors import InputError
+from optplan.robots import USUAL_ROBOTS
 
 if TYPE_CHECKING:
     from optplan.domain.result import Plan
@@ -520,7 +520,7 @@ def compare_command(
     """Compare solvers: instances x solvers x seeds x budgets, as a table and CSV."""
     from optplan.cli.ordering import compare_and_print
 
-    compare_and_print(instances, solver, seed, budget, robot or USUAL_ROBOTS["Drawing"], out, force, quiet, json)
+    compare_and_print(instances, solver, seed, budget, robot, out, force, quiet, json)
 
 
 @app.command()

@@ -10,7 +10,6 @@ import typer
 
 from optplan.cli import output
 from optplan.cli.settings import (
-    USUAL_ROBOTS,
     ConfigFile,
     Cut,
     Metric,
@@ -24,6 +23,7 @@ from optplan.cli.settings import (
     settings_of,
 )
 from optplan.domain.errors import InputError
+from optplan.robots import USUAL_ROBOTS
 
 
 def fleet_command(

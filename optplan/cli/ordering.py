@@ -86,7 +86,7 @@ def compare_and_print(
     solvers: list[str] | None,
     seeds: list[int] | None,
     budgets: list[str] | None,
-    robot: str,
+    robot: str | None,
     out: Path | None,
     force: bool,
     quiet: bool,

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 CONFIG = Path("optplan.toml")
 """Configuration file that is read from the current folder when there is one."""
 
-USUAL_ROBOTS = {"Drawing": "beach-rake", "Field": "line-marker", "Facade": "boom-washer", "Surface": "arm-grinder"}
-"""Who does a job unless somebody else is named."""
-
 RobotName = Annotated[str | None, typer.Option("--robot", "-r", help="Preset or robot file (.toml, .json).")]
 ConfigFile = Annotated[Path | None, typer.Option("--config", "-c", help="Settings file; default: ./optplan.toml.")]
 CloseGap = Annotated[

@@ -10,14 +10,13 @@ from pathlib import Path
 
 from optplan.coverage import cover
 from optplan.domain.errors import InputError, located
-from optplan.domain.facade import Facade
 from optplan.domain.options import Options
 from optplan.domain.ordering import OrderingProblem
 from optplan.instances import shipped_or_file
 from optplan.ordering.circles import DISTANCE, TAU, circle_problem
 from optplan.ordering.tsplib import SUFFIXES, Instance, read_tsplib
 from optplan.problem import problem_of
-from optplan.robots import load_robot
+from optplan.robots import USUAL_ROBOTS, load_robot
 from optplan.schema.files import read_text
 
 DRAWINGS = (".svg", ".svgz")
@@ -41,15 +40,15 @@ class Case:
     library: Instance | None = None
 
 
-def load_case(source: str | Path, robot: str | Path = "beach-rake", options: Options | None = None) -> Case:
+def load_case(source: str | Path, robot: str | Path | None = None, options: Options | None = None) -> Case:
     """An ordering problem from a file, or from an instance that ships with optplan.
 
     Parameters
     ----------
     source : a drawing, a plan or a JSON job, a library file (.tsp, .atsp, .sop, .gtsp, .pcglns), a JSON file of washing
         circles, or the name of a shipped instance
-    robot, options : for drawings and jobs: whose strokes they become, and under which metric; where nothing else is
-        asked for, facades are washed by the boom washer
+    robot, options : for drawings and jobs: whose strokes they become (None: the preset that suits the job), and under
+        which metric
 
     Raises
     ------
@@ -72,11 +71,11 @@ def load_case(source: str | Path, robot: str | Path = "beach-rake", options: Opt
     return Case(file.stem, _of_job(file, robot, options or Options()))
 
 
-def _of_job(file: Path, robot: str | Path, options: Options) -> OrderingProblem:
+def _of_job(file: Path, robot: str | Path | None, options: Options) -> OrderingProblem:
     from optplan.jobs.reading import read
 
     job = read(file)
-    machine = load_robot("boom-washer" if isinstance(job, Facade) and robot == "beach-rake" else robot)
+    machine = load_robot(robot or USUAL_ROBOTS[type(job).__name__])
     return problem_of(job, cover(job, machine, options), machine, options)[1]
 
 

@@ -9,6 +9,9 @@ from optplan.domain.robot import Robot
 
 _PRESETS = Path(__file__).parent
 
+USUAL_ROBOTS = {"Drawing": "beach-rake", "Field": "line-marker", "Facade": "boom-washer", "Surface": "arm-grinder"}
+"""Who does a job unless somebody else is named."""
+
 
 def robot_names() -> tuple[str, ...]:
     """Names of the presets, sorted."""
