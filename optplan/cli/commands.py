@@ -12,8 +12,9 @@ import typer
 from optplan.cli import output
 from optplan.cli.fields import field_command
 from optplan.cli.fleets import fleet_command
+from optplan.cli.listings import instances, robots, schema, solvers
+from optplan.cli.looking import check, export, show, simulate
 from optplan.cli.settings import (
-    Animate,
     Areas,
     Avoid,
     Boundary,
@@ -31,48 +32,38 @@ from optplan.cli.settings import (
     Entries,
     EntryVertex,
     Fewest,
-    FilmDuration,
-    FilmSize,
-    Fps,
-    Frames,
-    HeadingNoise,
+    Force,
     Horizontal,
-    Ideal,
     InnerFirst,
     Inset,
     Iterations,
     JerkLimit,
+    Json,
     Keep,
     Kind,
-    Lag,
     Lift,
     Links,
-    Lookahead,
     Margin,
-    Mass,
     Metric,
-    Motor,
-    Noise,
     OnCanvas,
+    OutFile,
     Padding,
     Pattern,
     Placement,
+    PlanFile,
     PowerLimit,
+    Quiet,
     Refill,
     Reversing,
     RobotName,
     Rule,
     Seed,
-    Simulated,
-    Slip,
     SolverName,
     Spacing,
-    SpeedUp,
     SpotHeadings,
     Start,
     TimeLimit,
     Tolerance,
-    Tracker,
     TransitSpeed,
     Travel,
     Turned,
@@ -87,7 +78,6 @@ from optplan.cli.settings import (
     with_entries,
 )
 from optplan.domain.errors import InputError
-from optplan.robots import USUAL_ROBOTS
 
 if TYPE_CHECKING:
     from optplan.domain.result import Plan
@@ -104,11 +94,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-PlanFile = Annotated[Path, typer.Argument(help="A plan file (plan.json).", show_default=False)]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON for machines.")]
-Force = Annotated[bool, typer.Option("--force", "-f", help="Replace files that exist.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
-OutFile = Annotated[Path | None, typer.Option("--output", "-o", help="File to write.", show_default=False)]
 Exports = Annotated[list[str] | None, typer.Option("--export", "-e", help="Also write this format. Repeatable.")]
 Rest = Annotated[bool, typer.Option("--rest", help="Run the stages that follow, too.")]
 
@@ -210,7 +195,7 @@ def plan_command(
     job = shipped_or_file(job)
     chosen = robot or base.get("robot")
     if print_config:
-        print(config_text(options, chosen or USUAL_ROBOTS["Drawing"]), end="")
+        print(config_text(options, chosen or "beach-rake"), end="")
         return
     folder = out or Path(f"{job.stem}-plan")
     _plan_and_write(
@@ -267,6 +252,7 @@ def _plan_and_write(
     from optplan.domain.stop import StopRule
     from optplan.domain.units import length
     from optplan.exports import FORMATS
+    from optplan.robots import USUAL_ROBOTS
 
     unknown = [name for name in export if name not in FORMATS]
     if unknown:
@@ -394,6 +380,7 @@ def _load(file: Path, flags: dict[str, Any]) -> Plan:
     import optplan as op
     from optplan.domain.options import Options
     from optplan.domain.result import Plan
+    from optplan.robots import USUAL_ROBOTS
 
     robot = flags.get("robot")
     if "robot" in flags and _is_job(file):
@@ -599,197 +586,16 @@ def resume(
         raise typer.Exit(1)
 
 
-@app.command()
-def check(file: PlanFile, json: Json = False) -> None:
-    """Check a plan with the independent judge; exit 1 when a limit is broken."""
-    import optplan as op
-
-    report = op.verify(op.load_plan(file))
-    if json:
-        output.print_json(output.report_facts(report))
-    else:
-        output.print_report(report)
-        missing = [check.name for check in report.checks if check.detail.startswith("Not checked")]
-        passed = "all checks passed" if not missing else f"passed as far as it goes; not checked: {', '.join(missing)}"
-        print(passed if report.ok else "A CHECK FAILED")
-    if not report.ok:
-        raise typer.Exit(1)
-
-
-@app.command()
-def show(
-    file: PlanFile,
-    out: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help=".png, .svg, .pdf; a film: .gif, .mp4, .json. Default: beside the plan."),
-    ] = None,
-    dpi: Annotated[
-        int | None, typer.Option(min=20, max=1200, help="Pixels per inch; default: 150, of a film 80.")
-    ] = None,
-    convergence: Annotated[
-        bool, typer.Option("--convergence", help="What the solver found and proved over time, instead of the plan.")
-    ] = False,
-    in_space: Annotated[bool, typer.Option("--3d", help="A facade's building in three dimensions.")] = False,
-    animate: Animate = False,
-    frames: Frames = False,
-    simulated: Simulated = False,
-    duration: FilmDuration = None,
-    speed_up: SpeedUp = None,
-    fps: Fps = None,
-    size: FilmSize = None,
-    tracker: Tracker = "path-frame",
-    ideal: Ideal = False,
-    lag: Lag = None,
-    slip: Slip = None,
-    noise: Noise = None,
-    seed: Seed = None,
-    force: Force = False,
-    quiet: Quiet = False,
-    json: Json = False,
-) -> None:
-    """Picture of a plan, or a film of the robot driving it."""
-    import optplan as op
-    from optplan.cli.driving import film, unwanted
-
-    flags = dict(locals())
-    unwanted(flags)
-    plan = op.load_plan(file)
-    if animate:
-        target = film(plan, file, out, flags, force, quiet or json)
-    elif convergence:
-        if plan.ordering is None:
-            raise InputError("the plan has no order yet; run optplan order first", str(file))
-        target = out or file.with_name(f"{file.stem}-convergence.png")
-        op.draw_convergence(plan.ordering, target, title=plan.job.name, overwrite=force, dpi=dpi or 150)
-    else:
-        target = out or file.with_suffix(".png")
-        op.draw(plan, target, overwrite=force, dpi=dpi or 150, in_space=in_space)
-    _tell_file(target, json)
-
-
-@app.command("simulate")
-def simulate_command(
-    file: PlanFile,
-    out: Annotated[
-        Path | None, typer.Option("--output", "-o", help="CSV of the drive, a line a control step.", show_default=False)
-    ] = None,
-    tracker: Tracker = "path-frame",
-    ideal: Ideal = False,
-    lag: Lag = None,
-    mass: Mass = None,
-    motor: Motor = None,
-    slip: Slip = None,
-    noise: Noise = None,
-    heading_noise: HeadingNoise = None,
-    seed: Seed = None,
-    lookahead: Lookahead = None,
-    force: Force = False,
-    quiet: Quiet = False,
-    json: Json = False,
-) -> None:
-    """Let a simulated robot drive a plan: how far off it gets, and what its wheels do."""
-    from optplan.cli.driving import simulate_and_print
-
-    simulate_and_print(file, out, dict(locals()), force, quiet, json)
-
-
-@app.command("export")
-def export_command(
-    file: PlanFile,
-    to: Annotated[
-        str,
-        typer.Option(
-            "--to",
-            "-t",
-            help="csv: points in time; txt: lines 'x y tool'; tool: its commands; tsplib: the ordering problem; "
-            "stops, stops-json: of a facade.",
-        ),
-    ],
-    out: OutFile = None,
-    spacing: Annotated[str | None, typer.Option(help="Greatest distance between points, e.g. 5cm.")] = None,
-    force: Force = False,
-    json: Json = False,
-) -> None:
-    """Write a plan for another system."""
-    import optplan as op
-    from optplan.domain.units import length
-    from optplan.exports import FORMATS
-
-    if to not in FORMATS:
-        raise InputError(f"there is no format {to!r}; expected one of {', '.join(FORMATS)}", "--to")
-    target = out or file.with_suffix(FORMATS[to].suffix)
-    distance = None if spacing is None else length(spacing)
-    op.export_plan(op.load_plan(file), to, target, spacing=distance, overwrite=force)
-    _tell_file(target, json)
-
-
-def _tell_file(file: Path, json: bool) -> None:
-    if json:
-        output.print_json({"files": [str(file)]})
-    else:
-        print(file)
-
-
-@app.command()
-def robots(json: Json = False) -> None:
-    """The robots there are."""
-    import optplan as op
-
-    known = [op.load_robot(name) for name in op.robot_names()]
-    if json:
-        output.print_json([{"name": robot.name, "summary": robot.summary} for robot in known])
-    else:
-        output.print_table(("robot", ""), [(robot.name, robot.summary) for robot in known])
-
-
-@app.command()
-def solvers(json: Json = False) -> None:
-    """The solvers there are."""
-    from optplan.ordering import SOLVERS
-
-    known = SOLVERS.values()
-    if json:
-        abilities = ("name", "summary", "proves", "precedence", "improves")
-        output.print_json([{name: getattr(solver, name) for name in abilities} for solver in known])
-        return
-    marks = [("yes" if s.proves else "", "yes" if s.precedence else "", "yes" if s.improves else "") for s in known]
-    rows = [(solver.name, *mark, solver.summary) for solver, mark in zip(known, marks, strict=True)]
-    output.print_table(("solver", "proves", "precedence", "any-time", ""), rows)
-    print("proves: gives a bound; precedence: knows rules of order; any-time: improves as long as it may")
-
-
-@app.command()
-def instances(json: Json = False) -> None:
-    """The jobs that ship with optplan."""
-    import optplan as op
-
-    known = [(name, str(op.instance(name))) for name in op.instance_names()]
-    if json:
-        output.print_json([{"name": name, "file": file} for name, file in known])
-    else:
-        output.print_table(("instance", "file"), known)
-        print("drawings, facades, washing: optplan plan; ordering: optplan order; optplan compare takes them all")
-
-
-app.command("field")(field_command)
-app.command("fleet")(fleet_command)
-
-
-@app.command()
-def schema(
-    of: Annotated[str, typer.Argument(help="plan, job, robot, options or messages.")] = "plan",
-) -> None:
-    """JSON Schema of the files that optplan reads and writes."""
-    from pydantic import TypeAdapter
-
-    from optplan.schema.jobs import JobModel
-    from optplan.schema.messages import TrajectoryMessage
-    from optplan.schema.options import OptionsModel
-    from optplan.schema.plans import PlanModel
-    from optplan.schema.robots import RobotModel
-
-    known: dict[str, Any] = {"plan": PlanModel, "job": JobModel, "robot": RobotModel, "options": OptionsModel}
-    known["messages"] = TrajectoryMessage
-    if of not in known:
-        raise InputError(f"there is no schema of {of!r}; expected one of {', '.join(known)}")
-    output.print_json(TypeAdapter(known[of]).json_schema())
+for name, command in (
+    ("check", check),
+    ("show", show),
+    ("simulate", simulate),
+    ("export", export),
+    ("field", field_command),
+    ("fleet", fleet_command),
+    ("robots", robots),
+    ("solvers", solvers),
+    ("instances", instances),
+    ("schema", schema),
+):
+    app.command(name)(command)

@@ -23,7 +23,6 @@ from optplan.cli.settings import (
     settings_of,
 )
 from optplan.domain.errors import InputError
-from optplan.robots import USUAL_ROBOTS
 
 
 def fleet_command(
@@ -50,6 +49,7 @@ def fleet_command(
     from optplan.domain.units import length
     from optplan.fleets import MOST
     from optplan.instances import shipped_or_file
+    from optplan.robots import USUAL_ROBOTS
 
     flags = dict(locals())
     base = read_config(config)

@@ -17,6 +17,12 @@ if TYPE_CHECKING:
 CONFIG = Path("optplan.toml")
 """Configuration file that is read from the current folder when there is one."""
 
+PlanFile = Annotated[Path, typer.Argument(help="A plan file (plan.json).", show_default=False)]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON for machines.")]
+Force = Annotated[bool, typer.Option("--force", "-f", help="Replace files that exist.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
+OutFile = Annotated[Path | None, typer.Option("--output", "-o", help="File to write.", show_default=False)]
+
 RobotName = Annotated[str | None, typer.Option("--robot", "-r", help="Preset or robot file (.toml, .json).")]
 ConfigFile = Annotated[Path | None, typer.Option("--config", "-c", help="Settings file; default: ./optplan.toml.")]
 CloseGap = Annotated[
