@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -130,3 +131,66 @@ def test_mean_deviation_and_the_share_that_is_near() -> None:
     clean = verify(drawn(Cover((line,))))
     assert clean.figure("mean deviation") == pytest.approx(0, abs=1e-9)
     assert clean.figure("within 5 mm") == 1
+
+
+def _passes(line: np.ndarray, width: float, step: float) -> float:
+    """The area that a disc sweeping along a line comes back to, m2, by counting its visits to the places of a grid."""
+    pieces = [np.linspace(a, b, math.ceil(np.linalg.norm(b - a) / step), endpoint=False) for a, b in pairwise(line)]
+    middle = np.concatenate([*pieces, line[-1:]])
+    low, high = middle.min(axis=0) - width, middle.max(axis=0) + width
+    axes = [np.arange(a, b, step) for a, b in zip(low, high, strict=True)]
+    again = 0
+    for x in axes[0]:
+        near = np.hypot(x - middle[:, 0], axes[1][:, None] - middle[:, 1]) < width / 2
+        visits = near[:, 0].astype(int) + (near[:, 1:] & ~near[:, :-1]).sum(axis=1)
+        again += int(np.maximum(visits - 1, 0).sum())
+    return again * step**2
+
+
+_TURN = np.linspace(0, 2 * math.pi, 80)
+SELF_MARKED = {
+    "crosses itself": np.array([[-1.0, 0], [1, 0], [1, 1], [0, 1], [0, -1]]),
+    "goes back": np.array([[0.0, 0], [1, 0], [0, 0.02]]),
+    "goes there three times": np.array([[0.0, 0], [1, 0], [0, 0.02], [1, 0.04]]),
+    "an eight": np.stack([np.sin(_TURN[:-3]), np.sin(2 * _TURN[:-3]) / 2], axis=1),
+    "a spiral in its own mark": np.stack([_TURN / 40 * np.cos(3 * _TURN), _TURN / 40 * np.sin(3 * _TURN)], axis=1),
+    "narrow rows": np.array([[0.0, 0], [1, 0], [1, 0.06], [0, 0.06], [0, 0.12], [1, 0.12]]),
+}
+
+
+@pytest.mark.parametrize("line", SELF_MARKED.values(), ids=list(SELF_MARKED))
+@pytest.mark.parametrize("exact", [True, False])
+def test_a_line_that_comes_back_over_its_own_mark_is_overlap(line: np.ndarray, exact: bool) -> None:
+    step = 0.004
+    pen = Pen(line[0] + (0 if exact else 1e-5))
+    pen.draw(Stroke("driven", line + (0 if exact else 1e-5)), 0)
+    report = verify(plan_of(PLOTTER, pen.path, Cover((Stroke("line", line),))))
+    expected = _passes(line, 0.1, step)
+    assert expected > 0.008
+    assert report.figure("overlap area") == pytest.approx(expected, rel=0.04, abs=5e-4)
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_smooth_lines_are_marked_once_and_corners_but_for_their_tips(closed: bool) -> None:
+    angle = _TURN[:-1] if closed else _TURN[:-3]  # open, its ends are farther apart than it is wide
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    smooth = Stroke("ring", ring, closed=closed)
+    assert verify(drawn(Cover((smooth,)))).figure("overlap area") == pytest.approx(0, abs=1e-9)
+    steps = np.array([[0.0, 3], [1, 3], [1, 4], [2, 4], [2, 5]])
+    square = Stroke("square", np.array([[0.0, 6], [1, 6], [1, 7], [0, 7]]), closed=closed)
+    tip = 0.05**2 * (1 - math.pi / 4)  # what a disc has left at the corner and comes back to
+    report = verify(drawn(Cover((Stroke("steps", steps), square))))
+    assert report.figure("overlap area") == pytest.approx((7 if closed else 5) * tip, rel=0.03)
+
+
+def test_overlap_within_filled_areas_is_told_apart() -> None:
+    box = Area("box", (np.array([[0.0, 0], [1, 0], [1, 0.3], [0, 0.3]]),), 1)
+    rows = tuple(Stroke(f"{k}", np.array([[0.05, y], [0.95, y]])) for k, y in enumerate((0.05, 0.1, 0.15)))
+    cross = (Stroke("a", np.array([[2.0, 0], [3, 0]])), Stroke("b", np.array([[2.5, -1], [2.5, 1]])))
+    report = verify(drawn(Cover((*rows, *cross), (box,))))
+    inside = report.figure("overlap in areas")
+    ends = 0.05**2 * (2 * math.pi / 3 - math.sqrt(3) / 2)  # round ends side by side share a lens
+    assert inside == pytest.approx(2 * (0.9 * 0.05 + ends), rel=1e-3)
+    assert report.figure("overlap area") - inside == pytest.approx(0.01, rel=1e-6)
+    detail = next(check.detail for check in report.checks if check.name == "overlap")
+    assert "within areas" in detail
