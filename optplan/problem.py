@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from optplan.connectors.families import family_of, metric_of, start_states
-from optplan.connectors.padding import padded
+from optplan.connectors.padding import padded, padding_of
 from optplan.connectors.ways import ends_of
 from optplan.coverage.beside import refusals
 from optplan.domain.arrays import FloatArray, IntArray
@@ -172,7 +172,6 @@ def ordering_problem(
     options = options or Options()
     family = family_of(robot, options)
     start = _start(cover, options)
-    asked = options.connect
     entry, leave = padded(ways, options)
     ways = replace(ways, entry=entry, exit=leave)
     costs: ArcCosts
@@ -195,8 +194,6 @@ def ordering_problem(
         costs = DubinsCosts(ways.exit[:, [0, 1, 3]], ways.entry[:, [0, 1, 3]], family.radius, dubins_lengths)
     else:
         costs = EuclidCosts(ways.exit[:, :3], ways.entry[:, :3])
-    # what is driven with the tool up counts, of padding too
-    padding = np.full(len(ways), asked.padding) if asked.padding > 0 else np.zeros(0)
     begin = np.zeros(0)
     if start is not None and family.headings:
         begin = start_states(start, options.order.heading, ways.entry, family)[1]
@@ -208,7 +205,7 @@ def ordering_problem(
         start_costs=begin,
         precedence=np.array(cover.precedence).reshape(-1, 2),
         enforced=_enforced(ways, cover),
-        node_costs=padding,
+        node_costs=padding_of(ways, options.connect),
     )
 
 

@@ -479,7 +479,7 @@ def order(
     file = shipped_or_file(file)
     if is_instance(file):
         for name in ("metric", "start", "entries", "avoid", "drying", "areas", "on_canvas", "clearance", "reversing",
-                     "padding", "refill", "horizontal", "travel", "lift"):  # fmt: skip
+                     "padding", "curved_padding", "refill", "horizontal", "travel", "lift"):  # fmt: skip
             if flags[name] is not None:
                 flag = "--avoid-finished" if name == "avoid" else f"--{name.replace('_', '-')}"
                 raise InputError("says nothing about an instance of a library, which has its costs", flag)

@@ -83,6 +83,7 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
     rows = _Rows([], [], [], [], [], [], [], [], [], [])
     start = options.order.start or cover.start
     here: FloatArray | None = None  # x, y, heading, curvature
+    behind = -1  # the stroke that ends here
     if start is not None and len(visits):
         first = entry[:1]
         heading = options.order.heading
@@ -103,27 +104,28 @@ def connect(visits: Traversals, cover: Cover, robot: Robot, options: Options | N
         else:
             pieces = driven(stroke, visit.entry_vertex, visit.reverse, robot, options)
             there = np.array([*pieces.start[0], pieces.heading[0], pieces.curvature[0]])
-        lead = entry[row][[0, 1, 3, 4]] if asked.pad_before > 0 else there
+        lead_in, lead_out = (0.0, 0.0) if stroke.is_stop else (asked.pad_before, asked.pad_after)
+        lead = entry[row][[0, 1, 3, 4]] if lead_in > 0 else there
         if here is not None:
             begun, ended = family.eased(np.array([here, lead]))
             if begun[3] != here[3]:
-                rows.add(_pieces([_turn(here, 0.0)]), RAISED, int(visits.stroke[row - 1]) if row else -1)
+                rows.add(_pieces([_turn(here, 0.0)]), RAISED, behind)
             joined = connector(begun, ended, family, turns, roads)
             rows.add(joined.pieces, RAISED, -1, gear=joined.gear)
             if ended[3] != lead[3]:
-                rows.add(_pieces([_turn(lead, 0.0)]), RAISED, visit.stroke)
-        rows.add(pieces_between(lead, asked.pad_before, asked.curved_padding), RAISED, -1)
+                rows.add(_pieces([_turn(lead, 0.0)]), RAISED, -1 if lead_in > 0 else visit.stroke)
+        rows.add(pieces_between(lead, lead_in, asked.curved_padding), RAISED, -1)
         # pins that stay down while the robot turns sharply would draw a swirl
         sharp = (pieces.length == 0) & (np.abs(pieces.turn) > options.connect.corner) & turns
         tool = np.where(sharp, RAISED, stroke.tool)
         if not (turns or stroke.is_stop):
             tool, pieces = tool[pieces.length > 0], _without_turns(pieces)
         rows.add(pieces, tool, visit.stroke, stroke.dwell)
-        here = _end(pieces)
-        if asked.pad_after > 0:
-            tail = pieces_between(here, asked.pad_after, asked.curved_padding)
+        here, behind = _end(pieces), visit.stroke
+        if lead_out > 0:
+            tail = pieces_between(here, lead_out, asked.curved_padding)
             rows.add(tail, RAISED, -1)
-            here = _end(tail)
+            here, behind = _end(tail), -1
     return _path(rows)
 
 

@@ -1,4 +1,4 @@
-"""Ways before and after strokes in their own direction, as older planners have them."""
+"""Ways before and after strokes in their own direction, as older planners have them. Stops have none."""
 
 from __future__ import annotations
 
@@ -21,17 +21,15 @@ def padded(ways: Traversals, options: Options) -> tuple[FloatArray, FloatArray]:
         return ways.entry, ways.exit
     if options.order.metric == "time":
         raise InputError("padding is there to compare lengths with; expected the metric 'cc' or 'dubins'")
-    return before(ways.entry, asked), after(ways.exit, asked)
+    moves = (ways.length > 0)[:, None]
+    entry = np.where(moves, _moved(ways.entry, -asked.pad_before, asked.curved_padding), ways.entry)
+    leave = np.where(moves, _moved(ways.exit, asked.pad_after, asked.curved_padding), ways.exit)
+    return entry, leave
 
 
-def before(entry: FloatArray, asked: ConnectOptions) -> FloatArray:
-    """States (k, 5), the last ones headings and curvatures, so far ahead of entries that the padding ends there."""
-    return _moved(entry, -asked.pad_before, asked.curved_padding)
-
-
-def after(leave: FloatArray, asked: ConnectOptions) -> FloatArray:
-    """States (k, 5) at the end of the padding behind exits."""
-    return _moved(leave, asked.pad_after, asked.curved_padding)
+def padding_of(ways: Traversals, asked: ConnectOptions) -> FloatArray:
+    """(m,) m of padding of each way; empty when there is none at all."""
+    return np.where(ways.length > 0, asked.padding, 0.0) if asked.padding > 0 else np.zeros(0)
 
 
 def pieces_between(state: FloatArray, length: float, curved: bool) -> Pieces:

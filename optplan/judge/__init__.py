@@ -20,6 +20,7 @@ from optplan.judge import (
     _gears,
     _motion,
     _ordering,
+    _padding,
     _strokes,
     _supplies,
     _tool,
@@ -78,7 +79,9 @@ def verify(plan: Plan) -> Report:
         checks += unchecked(["visits"], "the plan does not say which ways of driving were chosen")
     else:
         checks.append(_strokes.visits(path, samples, plan.visits))
-    checks += [_strokes.tool(path, robot), *_tool.swirls(path, robot)]
+    padding, padded = _padding.padding(path, samples, cover, options.connect)
+    checks += [_strokes.tool(path, robot), *_tool.swirls(path, robot), padding]
+    figures += padded
     if cover is None:
         names = ["canvas", "margin", _areas.NAME, *_coverage.NAMES, _finished.NAME, _wheels.NAME]
         checks += unchecked(names, "the plan has no strokes")

@@ -72,3 +72,38 @@ def test_padding_says_what_it_cannot_do() -> None:
     for bad in (-1.0, math.nan, True):
         with pytest.raises(InputError, match="pad_before"):
             ConnectOptions(pad_before=bad)
+
+
+def _clean(plan: op.Plan) -> None:
+    assert plan.report is not None
+    assert plan.report.ok, [check for check in plan.report.checks if check.verdict.value == "failed"]
+
+
+@pytest.mark.parametrize("curved", [False, True])
+@pytest.mark.parametrize("metric", ["cc", "dubins"])
+def test_arcs_that_are_tighter_than_the_robot_steers_in_transit_have_it_too(metric: str, curved: bool) -> None:
+    # the nozzle is outside of a left turn: the robot itself drives circles of 0.44 m and 0.19 m
+    arcs = tuple(
+        FieldSegment(f"{r}", np.array([x + r, 0.0]), np.array([x, r]), np.array([x, 0.0]), math.pi / 2, directed=True)
+        for x, r in ((0.0, 0.85), (6.0, 0.6))
+    )
+    asked = ConnectOptions(pad_before=0.5, pad_after=0.1, curved_padding=curved)
+    options = Options(cover=CoverOptions(cut=False), order=OrderOptions(metric=metric), connect=asked)
+    plan = op.plan(Field("x", arcs), ROBOT, options)
+    _clean(plan)
+    assert plan.report is not None
+    assert plan.report.figure("padding") == pytest.approx(2 * 0.6)
+
+
+def test_closed_lines_have_it_and_stops_for_the_tank_do_not() -> None:
+    ring = FieldSegment("ring", np.array([10.0, 0.0]), np.array([10.0, 0.0]), np.array([8.0, 0]), math.tau)
+    asked = ConnectOptions(pad_before=0.5, pad_after=0.1)
+    order = OrderOptions(metric="cc", start=(0.0, 0.0), refill=16.0)
+    plan = op.plan(
+        Field("x", (*PARTS, ring)), ROBOT, Options(cover=CoverOptions(cut=False), order=order, connect=asked)
+    )
+    _clean(plan)
+    assert plan.report is not None
+    assert plan.cover is not None
+    assert any(stroke.is_stop for stroke in plan.cover.strokes)
+    assert plan.report.figure("padding") == pytest.approx(3 * 0.6)
