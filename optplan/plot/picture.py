@@ -15,7 +15,7 @@ from optplan.domain.result import Plan
 from optplan.domain.robot import MIDDLE, DiffDrive, ToolPlace
 from optplan.geometry.paths import along
 from optplan.geometry.tools import tool_positions
-from optplan.plot.faults import draw_faults
+from optplan.plot.faults import draw_faults, faults_of, height_of, legend_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,10 +56,13 @@ def figure(plan: Plan) -> Figure:
     size = np.maximum(high - low, 1e-9)
     inches = 8 * size / size.max()
     inches = np.maximum(inches, 2.5)
-    made = Figure(figsize=(max(float(inches[0]) + 1.1, 7.0), float(inches[1]) + 1.5), facecolor="white")
+    wide, faults = max(float(inches[0]) + 1.1, 7.0), faults_of(plan)
+    legend = legend_of(faults, 72 * min(float(inches[0]) + 0.5, wide - 0.9))
+    below = 0.55 + height_of(legend)
+    made = Figure(figsize=(wide, float(inches[1]) + 0.95 + below), facecolor="white")
     width, height = made.get_size_inches()
     left = max(0.75, (width - inches[0]) / 2)
-    axes = made.add_axes((left / width, 0.55 / height, inches[0] / width, inches[1] / height))
+    axes = made.add_axes((left / width, below / height, inches[0] / width, inches[1] / height))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     small = size.max() < 1
     colours = _SAND if isinstance(plan.robot.mobility, DiffDrive) else _PAPER
@@ -80,7 +83,7 @@ def figure(plan: Plan) -> Figure:
         _draw_path(axes, plan, plan.path, colours, points_per_metre)
     _draw_areas(axes, plan)
     _draw_places(axes, plan, colours)
-    draw_faults(axes, plan)
+    draw_faults(axes, faults, legend)
     _draw_title(made, plan, colours)
     return made
 
