@@ -7,14 +7,15 @@ import numpy as np
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.path import RAISED, Trajectory
 from optplan.domain.robot import Tool
-from optplan.timing.actuation import tool_commands
+from optplan.timing.actuation import Commands, tool_commands
 
 
 def switched(time: FloatArray, lag: FloatArray, trajectory: Trajectory, tool: Tool) -> tuple[IntArray, float]:
     """The tool settings (n,) at moments of a drive, and by how much marks begin or end elsewhere than planned, m.
 
     Commands are given where the plan's timetable has them, by the robot's place along the path; what it does
-    meanwhile decides where it is when they take effect.
+    meanwhile decides where it is when they take effect. A gap or a mark that is too short for the tool to follow is
+    missed by as much as is marked, or left out, of it.
 
     Parameters
     ----------
@@ -38,4 +39,17 @@ def switched(time: FloatArray, lag: FloatArray, trajectory: Trajectory, tool: To
     before = np.searchsorted(effect, time + 1e-9, side="right") - 1
     tools = np.where(before >= 0, setting[np.maximum(before, 0)], RAISED)
     missed = np.abs(np.interp(effect, time, progress) - at)
-    return tools.astype(np.int64), float(missed.max())
+    return tools.astype(np.int64), max(float(missed.max()), _never_told(trajectory, commands, float(progress[-1])))
+
+
+def _never_told(trajectory: Trajectory, commands: Commands, driven: float) -> float:
+    """The longest stretch (m) of what was driven in which the tool is not as wanted as a change was never told."""
+    path = trajectory.path
+    changes = np.flatnonzero(np.diff(path.tool)) + 1
+    wanted = path.offsets[changes]
+    told = np.isin(wanted, commands.at)
+    # an untold change is made up for by the next one that is told
+    ends = np.append(commands.at, path.offsets[-1])
+    until = ends[np.searchsorted(ends[:-1], wanted, side="right")]
+    lost = np.where(told, 0.0, np.minimum(until, driven) - wanted)
+    return float(lost.max(initial=0.0))

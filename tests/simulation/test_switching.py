@@ -9,6 +9,7 @@ import pytest
 
 import optplan as op
 from optplan.domain.drive import Drive
+from optplan.simulation.switching import switched
 from tests.simulation.plans import path_of, plan_of, rake
 
 PATH = path_of([(2.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), (2.0, 0.0, 0.0, 0.0)], [1, 0, 1])
@@ -37,3 +38,29 @@ def test_marks_begin_and_end_where_they_should_though_the_tool_is_late(on: float
 def test_a_tool_that_answers_at_once_has_no_such_figure() -> None:
     with pytest.raises(KeyError):
         _drive(0.0, 0.0).figure("ends of marks, greatest error")
+
+
+@pytest.mark.parametrize(("gap", "on"), [(0.05, 1.0), (0.1, 0.8)])
+def test_a_gap_that_is_too_short_for_the_tool_is_an_error_as_long_as_the_gap(gap: float, on: float) -> None:
+    robot = rake()
+    slow = replace(robot, tool=replace(robot.tool, on_delay=on))
+    path = path_of([(2.0, 0.0, 0.0, 0.0), (gap, 0.0, 0.0, 0.0), (2.0, 0.0, 0.0, 0.0)], [1, 0, 1])
+    drive = op.simulate(replace(plan_of(path), robot=slow), op.DriveOptions(ideal=True))
+    inside = (drive.tool_x > 2.0) & (drive.tool_x < 2.0 + gap)
+    assert (drive.tool[inside] == 1).all()
+    assert drive.figure("ends of marks, greatest error") == pytest.approx(gap, abs=0.005)
+
+
+@pytest.mark.parametrize("delay", [0.1, 0.4])
+@pytest.mark.parametrize("pace", [0.5, 1.0, 1.5])
+def test_a_robot_at_another_speed_than_planned_misses_by_what_it_drives_meanwhile(delay: float, pace: float) -> None:
+    tool = replace(rake().tool, on_delay=delay, off_delay=delay)
+    trajectory = plan_of(PATH).trajectory
+    assert trajectory is not None
+    # every place is reached at a moment that is stretched; commands go by place, delays do not stretch
+    time = np.arange(0.0, trajectory.duration / pace + 1.0, 0.001)
+    place = np.interp(time * pace, trajectory.t, trajectory.s)
+    lag = np.interp(time, trajectory.t, trajectory.s) - place
+    _, missed = switched(time, lag, trajectory, tool)
+    speed = float(np.max(np.diff(trajectory.s) / np.maximum(np.diff(trajectory.t), 1e-12)))
+    assert missed == pytest.approx(abs(pace - 1) * delay * speed, abs=0.004)
