@@ -29,7 +29,7 @@ def test_paint_goes_by_area_and_energy_by_time() -> None:
     assert plan.report is not None
     assert plan.trajectory is not None
     area = 50 * 0.12 + math.pi * 0.06**2
-    assert plan.report.figure("paint") == pytest.approx(0.13 * area, rel=1e-3)
+    assert plan.report.figure("paint") == pytest.approx(0.09 * area, rel=1e-3)
     assert plan.report.figure("energy") == pytest.approx(136 * plan.trajectory.duration / 3600)
     assert "again" not in detail
     assert "20 L" in detail

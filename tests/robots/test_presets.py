@@ -13,6 +13,7 @@ from optplan import robots
 from optplan.domain.errors import InputError
 from optplan.domain.options import TimeOptions
 from optplan.domain.robot import DiffDrive, Robot
+from optplan.jobs.fields import template
 from optplan.robots import load_robot, robot_names
 
 FOLDER = Path(robots.__file__).parent
@@ -37,9 +38,9 @@ def test_every_number_has_a_source(name: str) -> None:
     data = tomllib.loads(_text(name))
     sources = data["sources"]
     assert all(sources.values())
-    for table in ("tool", "mobility", "canvas"):
+    for table in ("tool", "mobility", "canvas", "supplies"):
         for key, value in data.get(table, {}).items():
-            if key in ("kind", "fill", "red_is_travel", "green_is_start"):
+            if key in ("kind", "name", "fill", "red_is_travel", "green_is_start"):
                 continue  # words and syntax, no measurements
             if isinstance(value, bool) and not value and f"{table}.{key}" not in sources:
                 continue
@@ -47,6 +48,19 @@ def test_every_number_has_a_source(name: str) -> None:
     for place in sources:  # and no source speaks of a number that is not there
         table, _, key = place.partition(".")
         assert key in data[table] if key else table in data
+
+
+def test_a_tank_and_a_charge_of_the_line_marker_last_as_published() -> None:
+    marker = load_robot("line-marker")
+    assert marker.supplies is not None
+    supplies, width = marker.supplies, marker.tool.settings[1].width
+    field, pitch = (sum(part.length for part in template(name).segments) for name in ("american-football", "football"))
+    # a tank marks one American football field and little more, crossings marked twice included
+    assert 0.85 * supplies.tank < supplies.per_area * width * field < 0.98 * supplies.tank
+    hours = supplies.battery / supplies.power / 3600
+    assert hours == pytest.approx(5.0)
+    # a charge marks eleven football fields, though a third of the way is driven between the lines
+    assert 11 * 1.5 * pitch / marker.mobility.work_speed < 3600 * hours
 
 
 def test_line_marker_limits_follow_from_its_wheels() -> None:
