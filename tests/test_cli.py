@@ -105,10 +105,21 @@ def test_an_existing_plan_is_kept_unless_asked(run: Runner, two: str) -> None:
     assert Path("made/plan.json").read_bytes() != before
 
 
-def test_an_instance_of_a_library_has_its_costs(run: Runner) -> None:
-    refused = run("order", "tiers40", "--metric", "cc")
+@pytest.mark.parametrize("flags", [("--metric", "cc"), ("--padding", "1"), ("--curved-padding",)])
+def test_an_instance_of_a_library_has_its_costs(run: Runner, flags: tuple[str, ...]) -> None:
+    refused = run("order", "tiers40", *flags)
     assert refused.code == 2
-    assert "--metric" in refused.err
+    assert flags[0] in refused.err
+
+
+@pytest.mark.parametrize(("asked", "metres"), [("50cm,10cm", 0.6), ("0.2", 0.4)])
+def test_padding_is_driven_and_reported(run: Runner, two: str, asked: str, metres: float) -> None:
+    found = json.loads(run("plan", two, "-o", "padded", "--padding", asked, "--json").out)
+    assert found["ok"]
+    assert found["figures"]["padding"]["value"] == pytest.approx(found["strokes"] * metres)
+    assert (
+        json.loads(run("check", "padded/plan.json", "--json").out)["figures"]["padding"] == found["figures"]["padding"]
+    )
 
 
 def test_exports_of_an_earlier_plan_are_named(run: Runner, two: str) -> None:
@@ -239,6 +250,9 @@ HOSTILE = {
     "metric": (["plan", "two.svg", "--metric", "crow"], "crow"),
     "dubins without radius": (["plan", "two.svg", "--robot", "pen-plotter", "--metric", "dubins"], "turning radius"),
     "format": (["plan", "two.svg", "--export", "stone"], "stone"),
+    "padding": (["plan", "two.svg", "--padding", "much"], "much"),
+    "padding of three": (["plan", "two.svg", "--padding", "1,2,3"], "--padding"),
+    "padding below nothing": (["plan", "two.svg", "--padding", "-1"], "pad_before"),
     "config": (["plan", "two.svg", "-c", "bad.toml"], "bad.toml"),
     "config key": (["plan", "two.svg", "-c", "key.toml"], "colour"),
     "config table": (["plan", "two.svg", "-c", "table.toml"], "page: is no table"),
