@@ -54,7 +54,7 @@ def cc_path(start: FloatArray, end: FloatArray, curvature: float, sharpness: flo
     start, end : (4,) x, y, heading, curvature: m, m, rad, 1/m
     curvature, sharpness : limits kappa_max and sigma_max, 1/m and 1/m^2, > 0
     family : "full": all words at full sharpness and the reference family's; "reference": that family alone (between
-        curvatures 0; other curvatures are first brought to 0)
+        curvatures 0 and the limit; other curvatures are first brought to one of these)
 
     Raises
     ------

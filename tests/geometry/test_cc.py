@@ -142,13 +142,16 @@ def test_straight_on_is_a_line() -> None:
 
 @pytest.mark.parametrize("curvature", [0.0, 0.7, -1.0])
 def test_a_clothoid_that_joins_two_states_is_found(curvature: float) -> None:
-    """Down to 0 and straight on: one turn has no peak at all."""
+    """Down to 0 and straight on: one turn has no peak at all. Blunter words from the limit may be shorter."""
     from optplan.geometry._kernels.clothoid import clothoid_end
 
     bend = clothoid_end(0, 0, 0, curvature, -math.copysign(1.0, curvature), abs(curvature))
     end = np.array(clothoid_end(*bend[:3], 0.0, 0.0, 2.0))
     path = cc_path(np.array([0, 0, 0, curvature]), end, 1.0, 1.0)
-    assert path.length == pytest.approx(abs(curvature) + 2.0, rel=1e-9)
+    check(path, end, 1.0, 1.0)
+    known = [path.length, *(length for _, length in path.runners_up)]
+    assert min(abs(length - abs(curvature) - 2.0) for length in known) <= 1e-9
+    assert path.length <= (abs(curvature) + 2.0) * (1 + 1e-9)
 
 
 @pytest.mark.parametrize(
@@ -234,12 +237,22 @@ def ratios(name: str, column: str, family: Family) -> FloatArray:
 def test_known_lengths() -> None:
     assert np.abs(ratios("cc00.csv", "cc00_len", "reference") - 1).max() <= 1e-9
     assert ratios("cc00.csv", "cc00_len", "full").max() <= 1 + 1e-9
-    curved = ratios("ccpm.csv", "cc_len", "full")
-    assert curved.mean() <= 0.85
-    # a handful of listed words have four extrema; they are shorter by 0.5 % at most
-    for found in (curved, ratios("ccarb.csv", "cc_len", "full")):
-        assert np.mean(found <= 1 + 1e-9) >= 0.985
-        assert found.max() <= 1.006
+    assert ratios("ccpm.csv", "cc_len", "full").mean() <= 0.85
+
+
+@known
+@pytest.mark.parametrize("name", ["ccpm.csv", "ccarb.csv"])
+def test_between_curved_ends_no_listed_path_is_shorter(name: str) -> None:
+    for row in rows(name):
+        start, end = (np.array([[float(row[f"{what}{i}"]) for what in ("x", "y", "th", "k")]]) for i in range(2))
+        limits = float(row["kappa_max"]), float(row["sigma_max"])
+        listed = float(row["cc_len"]) * (1 + 1e-9)
+        if cc_lengths(start, end, *limits)[0] > listed:
+            # listed paths miss their ends, by up to 33 um: this one is shorter for that alone
+            angles = np.linspace(0, 2 * math.pi, 32, endpoint=False)
+            around = np.repeat(end, len(angles), axis=0)
+            around[:, :2] += 3.3e-5 * np.column_stack([np.cos(angles), np.sin(angles)])
+            assert cc_lengths(np.repeat(start, len(angles), axis=0), around, *limits).min() <= listed, row["id"]
 
 
 @known

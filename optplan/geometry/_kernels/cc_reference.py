@@ -6,6 +6,9 @@ circle about the centre of its arc and cross it at a constant angle mu. A small 
 one by two clothoids of less sharpness. So the words are those of Dubins on such circles, and a turn's length is a
 function of its deflection alone, which is read from a table: no Fresnel integral per query.
 
+A turn may also begin, or end, at the curvature limit: its arc then has one clothoid, and its outer end lies on the
+circle of least radius.
+
 Lengths are in least radii (see `spiral`).
 """
 
@@ -126,27 +129,45 @@ def turn_length(delta: float, turns: FloatArray) -> float:
     return regular
 
 
-@njit("float64(float64, float64[::1])", cache=True, nogil=True, error_model="numpy", inline="always")
-def _least_length(delta: float, turns: FloatArray) -> float:
-    """No turn from straight to straight within the limits is shorter: two clothoids of the limit's sharpness."""
+@njit("float64(float64, float64, float64[::1])", cache=True, nogil=True, error_model="numpy", inline="always")
+def _end_length(delta: float, held: float, turns: FloatArray) -> float:
+    """Length of a first or last turn, which begins or ends at the limit when it is held."""
+    if held != 0.0:
+        return _wrapped(delta - 0.5 * turns[4]) + turns[4]
+    return turn_length(delta, turns)
+
+
+@njit("float64(float64, float64, float64[::1])", cache=True, nogil=True, error_model="numpy", inline="always")
+def _least_length(delta: float, held: float, turns: FloatArray) -> float:
+    """No such turn is shorter: from straight to straight, two clothoids of the limit's sharpness."""
+    if held != 0.0:
+        return turns[4]
     return 2.0 * (1.0 - 1e-9) * math.sqrt(max(delta, 0.0) * turns[4])
 
 
 @njit(
-    "UniTuple(float64, 7)(float64, float64, float64, float64[::1])",
+    "UniTuple(float64, 7)(float64, float64, float64, float64, float64, float64[::1])",
     cache=True,
     nogil=True,
     error_model="numpy",
 )
 def reference_word(
-    x: float, y: float, theta: float, turns: FloatArray
+    x: float, y: float, theta: float, held1: float, held2: float, turns: FloatArray
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Length, word, sides of the first and last turn (1: left), first deflection, line or middle deflection, last."""
+    """Length, word, sides of the first and last turn (1: left), first deflection, line or middle deflection, last.
+
+    held1, held2 : the curvature at the start and the end: 0, or 1 or -1, the limit of one side, with which the word's
+    first or last turn has to agree
+    """
     cx, cy, radius, mu = turns[0], turns[1], turns[2], turns[3]
+    # the centre of the first and last circle, as far ahead of the start and behind the end
+    cx1, cy1 = (cx, cy) if held1 == 0.0 else (0.0, 1.0)
+    cx2, cy2 = (cx, cy) if held2 == 0.0 else (0.0, 1.0)
     c = math.cos(theta)
     sn = math.sin(theta)
     size = 1.0 + abs(x) + abs(y)
-    if abs(y) <= STRAIGHT * size and abs(sn) <= STRAIGHT and c > 0.0 and x >= 0.0:
+    straight = held1 == 0.0 and held2 == 0.0
+    if straight and abs(y) <= STRAIGHT * size and abs(sn) <= STRAIGHT and c > 0.0 and x >= 0.0:
         return x, float(S), 1.0, 1.0, 0.0, x, 0.0
     best = math.inf
     word = float(S)
@@ -154,14 +175,19 @@ def reference_word(
     for i in range(4):
         d1 = 1.0 if i == 0 or i == 2 else -1.0
         d2 = 1.0 if i == 0 or i == 3 else -1.0
-        # from centre to centre; the last circle is the first one's image seen backwards
-        gx = x - c * cx - d2 * sn * cy - cx
-        gy = y - sn * cx + d2 * c * cy - d1 * cy
+        if d1 * held1 < 0.0 or d2 * held2 < 0.0:
+            continue
+        # from centre to centre; the last circle is seen backwards
+        gx = x - c * cx2 - d2 * sn * cy2 - cx1
+        gy = y - sn * cx2 + d2 * c * cy2 - d1 * cy1
         apart = math.sqrt(gx * gx + gy * gy)
         if i < 2:
             if apart <= 10.0 * EXACT * size:
                 delta = _wrapped(d1 * theta)
-                length = turn_length(delta, turns)
+                if held1 != 0.0 and held2 != 0.0:
+                    length = delta
+                else:
+                    length = _end_length(delta, held1 + held2, turns)
                 if length < best:
                     best, word, side1, side2, first, middle, last = length, float(T), d1, d2, delta, 0.0, 0.0
                 continue
@@ -179,16 +205,18 @@ def reference_word(
             continue
         delta1 = _wrapped(d1 * psi)
         delta2 = _wrapped(d2 * (theta - psi))
-        if line + _least_length(delta1, turns) + _least_length(delta2, turns) >= best:
+        if line + _least_length(delta1, held1, turns) + _least_length(delta2, held2, turns) >= best:
             continue
-        length = line + turn_length(delta1, turns) + turn_length(delta2, turns)
+        length = line + _end_length(delta1, held1, turns) + _end_length(delta2, held2, turns)
         if length < best:
             kind = float(TT) if i >= 2 and line <= EXACT * size else float(TST)
             best, word, side1, side2, first, middle, last = length, kind, d1, d2, delta1, line, delta2
     for i in range(2):
         d1 = 1.0 if i == 0 else -1.0
-        gx = x - c * cx - d1 * sn * cy - cx
-        gy = y - sn * cx + d1 * c * cy - d1 * cy
+        if d1 * held1 < 0.0 or d1 * held2 < 0.0:
+            continue
+        gx = x - c * cx2 - d1 * sn * cy2 - cx1
+        gy = y - sn * cx2 + d1 * c * cy2 - d1 * cy1
         apart = math.sqrt(gx * gx + gy * gy)
         if apart > 4.0 * radius or apart <= 10.0 * EXACT * size:
             continue
@@ -202,13 +230,37 @@ def reference_word(
             delta1 = _wrapped(d1 * psi1)
             delta2 = _wrapped(d1 * (psi1 - psi2))
             delta3 = _wrapped(d1 * (theta - psi2))
-            least = _least_length(delta1, turns) + _least_length(delta2, turns) + _least_length(delta3, turns)
+            least = _least_length(delta2, 0.0, turns)
+            least += _least_length(delta1, held1, turns) + _least_length(delta3, held2, turns)
             if least >= best:
                 continue
-            length = turn_length(delta1, turns) + turn_length(delta2, turns) + turn_length(delta3, turns)
+            length = turn_length(delta2, turns)
+            length += _end_length(delta1, held1, turns) + _end_length(delta3, held2, turns)
             if length < best:
                 best, word, side1, side2, first, middle, last = length, float(TTT), d1, d1, delta1, delta2, delta3
     return best, word, side1, side2, first, middle, last
+
+
+@njit(
+    "int64(float64, float64, float64, float64, float64, float64[::1], float64[:, ::1], int64)",
+    cache=True,
+    nogil=True,
+    error_model="numpy",
+)
+def held_pieces(
+    d: float, delta: float, held1: float, held2: float, s: float, turns: FloatArray, pieces: FloatArray, n: int
+) -> int:
+    """Writes rows of a turn that begins (held1) or ends (held2) at the limit, or both, as `turn_pieces` does."""
+    ramps = 1.0 if held1 == 0.0 or held2 == 0.0 else 0.0
+    if held1 == 0.0:
+        pieces[n, 0], pieces[n, 1], pieces[n, 2] = 0.0, d * s, 1.0 / s
+        n += 1
+    pieces[n, 0], pieces[n, 1], pieces[n, 2] = d, 0.0, max(_wrapped(delta - 0.5 * ramps * turns[4]), 0.0)
+    n += 1
+    if held2 == 0.0:
+        pieces[n, 0], pieces[n, 1], pieces[n, 2] = d, -d * s, 1.0 / s
+        n += 1
+    return n
 
 
 @njit(
