@@ -27,6 +27,7 @@ from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
 from optplan.geometry.cc import cc_lengths, cc_matrix, cc_path
 from optplan.geometry.curves import Curve, evaluate, joined, part
+from optplan.geometry.reversing import reversing_path
 
 LEVELS = (0.05, 0.5, 1.5)
 """Distances of road-map states from what is forbidden, in least turning radii."""
@@ -44,7 +45,10 @@ class Way(NamedTuple):
     curves: tuple[Curve, ...]
     """in driving order: one of continuous curvature, or lines between which the robot turns; none: there is no way"""
     source: str
-    """ "direct", "another speed", "road map" or "shortened"; without a curve, what is the matter"""
+    """ "direct", "another speed", "road map" or "shortened", or "in one gear" where others change it; without a curve,
+    what is the matter"""
+    gear: int = 1
+    """of a way that is not direct: 1 forwards, -1 backwards"""
 
     @property
     def length(self) -> float:
@@ -221,21 +225,40 @@ class CurvedRoads(Roads):
         return Way((shorter,), "shortened") if shorter.total < chain.total * (1 - 1e-9) else Way((chain,), "road map")
 
 
+class ReversingRoads(CurvedRoads):
+    """Connectors that may change gear. Where these would enter, the way around is driven in one gear, the better."""
+
+    def between(self, start: FloatArray, end: FloatArray) -> Way:
+        made = reversing_path(start, end, self.curvature, self.sharpness)
+        direct = made.curves(start[:3])
+        if not direct:
+            return Way((), "the ends are the same")
+        if all(self.surroundings.allows(curve, self.sag) for curve in direct):
+            return Way(direct, "direct")
+        forwards = super().between(start, end)
+        backwards = super().between(*(np.array([*at[:2], at[2] + math.pi, -at[3]]) for at in (start, end)))
+        if not (forwards.curves or backwards.curves):
+            return forwards
+        if backwards.length < forwards.length * (1 - 1e-9):
+            return Way(backwards.curves, "in one gear", -1)
+        return Way(forwards.curves, "in one gear")
+
+
 def roads_of(cover: Cover, robot: Robot, options: Options) -> Roads | None:
     """The road map that a plan's connectors need; None when nothing is forbidden.
 
     Raises
     ------
-    InputError : areas that are none, a metric without ways around, or reversing
+    InputError : areas that are none, or a metric without ways around
     """
     surroundings = surroundings_of(cover, options)
     if surroundings is None:
         return None
     family = family_of(robot, options)
-    if family.reversing:
-        raise InputError("ways around areas are driven forwards; expected areas, or reversing, not both")
     if family.metric == "dubins":
         raise InputError("there are no ways around areas under the metric 'dubins'; expected 'cc'")
+    if family.reversing:
+        return ReversingRoads(surroundings, 1 / family.radius, family.sharpness)
     if family.curved:
         return CurvedRoads(surroundings, 1 / family.radius, family.sharpness, family.pace)
     return StraightRoads(surroundings)

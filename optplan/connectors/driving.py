@@ -154,7 +154,7 @@ def connector(
     if roads is not None:
         way = roads.between(here, there)
         if way.curves and way.source != "direct":
-            return Connector(_along(way.curves, here, there, turns and not family.headings))
+            return Connector(_along(way.curves, here, there, turns and not family.headings), way.gear)
     if family.reversing:
         path = (
             reversing_path(here, there, 1 / family.radius, family.sharpness)

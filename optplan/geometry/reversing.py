@@ -17,6 +17,7 @@ import numpy as np
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.geometry.cc import EMPTY, END_HEADING, END_POSITION, END_SHARE, SLICE, cc_path, checked
+from optplan.geometry.curves import Curve
 from optplan.geometry.threads import by_rows
 
 _LETTERS = {1: "L", 0: "S", -1: "R"}
@@ -42,6 +43,17 @@ class ReversingPath(NamedTuple):
     def cusps(self) -> int:
         """How often the gear changes."""
         return int((np.diff(self.gears) != 0).sum())
+
+    def curves(self, start: FloatArray) -> tuple[Curve, ...]:
+        """One for each run in one gear, in the direction of travel, from x, y and heading of the body (3,)."""
+        made: list[Curve] = []
+        at = np.asarray(start, dtype=np.float64)
+        for run in np.split(np.arange(len(self.gears)), np.flatnonzero(np.diff(self.gears)) + 1):
+            if len(run):
+                turned = np.array([0.0, 0.0, 0.0 if self.gears[run[0]] > 0 else math.pi])
+                made.append(Curve(at + turned, self.curvatures[run], self.sharpnesses[run], self.lengths[run]))
+                at = made[-1].end - turned
+        return tuple(made)
 
 
 def reeds_shepp_path(start: FloatArray, end: FloatArray, radius: float) -> ReversingPath:

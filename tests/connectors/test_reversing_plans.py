@@ -75,12 +75,50 @@ def test_what_cannot_be_reversed_is_refused() -> None:
         op.plan(drawing, "beach-rake", options("cc"))
     with pytest.raises(InputError, match="does not drive backwards"):
         op.plan(drawing, "pen-plotter", options("auto"))
-    ring = ((5.0, 5.0), (6.0, 5.0), (6.0, 6.0))
-    areas = replace(options("cc"), connect=ConnectOptions(keep_out=(ring,), reversing=True))
-    with pytest.raises(InputError, match="not both"):
-        op.plan(drawing, "line-marker", areas)
     rake = op.load_robot("beach-rake")
     assert isinstance(rake.mobility, DiffDrive)
     able = replace(rake, mobility=replace(rake.mobility, reverses=True))
     with pytest.raises(InputError, match="says nothing about the metric 'euclid'"):
         op.plan(drawing, able, options("auto"))
+
+
+@pytest.mark.parametrize("headings", [(0.0, 0.0), (0.0, np.pi)])
+def test_ways_around_areas_are_driven_in_one_gear(headings: tuple[float, float]) -> None:
+    from shapely.geometry import LineString, Polygon
+
+    from optplan.connectors.around import ReversingRoads
+    from optplan.connectors.surroundings import Surroundings
+    from optplan.geometry.curves import evaluate
+
+    ring = np.array([(3.0, -2.0), (4.0, -2.0), (4.0, 2.0), (3.0, 2.0)])
+    wall = Polygon(ring)
+    roads = ReversingRoads(Surroundings((ring,), None, 0.1), 1.0, 1.0)
+    start, end = np.array([0, 0, headings[0], 0.3]), np.array([7, 0, headings[1], 0.0])
+    way = roads.between(start, end)
+    assert way.source == "in one gear"
+    # facing the wall the end is reached forwards; turned round there, either way costs a turn
+    assert way.gear == 1 or headings[1] != 0
+    turned = np.array([0, 0, 0 if way.gear > 0 else np.pi])
+    assert way.curves[0].start == pytest.approx(start[:3] + turned)
+    gap = way.curves[-1].end - turned - end[:3]
+    assert [*gap[:2], np.sin(gap[2])] == pytest.approx([0, 0, 0], abs=1e-8)
+    points = evaluate(way.curves[0], np.linspace(0, way.length, 2000)).points
+    assert LineString(points).distance(wall) > 0.1 - 1e-3
+    clear = roads.between(start, np.array([1.5, 1, 2.0, 0.0]))
+    assert clear.source == "direct"
+    assert len(clear.curves) > 1
+    for before, after in zip(clear.curves, clear.curves[1:], strict=False):
+        assert before.end[:2] == pytest.approx(after.start[:2])
+        assert abs(np.sin(before.end[2] - after.start[2])) < 1e-9
+
+
+def test_a_plan_among_areas_may_change_gear() -> None:
+    ring = ((5.0, 4.0), (7.0, 4.0), (7.0, 8.0), (5.0, 8.0))
+    areas = replace(options("cc"), connect=ConnectOptions(keep_out=(ring,), reversing=True))
+    plan = op.plan(op.read(PAGE), "line-marker", areas)
+    assert plan.report is not None
+    assert plan.report.ok, [check for check in plan.report.checks if check.verdict.value == "failed"]
+    assert plan.path is not None
+    assert plan.ordering is not None
+    assert len(plan.path.cusps) > 0
+    assert plan.path.length[plan.path.stroke < 0].sum() == pytest.approx(plan.ordering.cost, rel=1e-9)

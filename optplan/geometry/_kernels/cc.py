@@ -117,7 +117,7 @@ def solve(
         return 0.0
     found = words[REFERENCE]
     _reference(x, y, theta, a, b, s, turns, found)
-    best = found[0]
+    best: float = found[0]
     if full and not (found[1] == S and a == 0.0 and b == 0.0):
         full_words(x, y, theta, a, b, s, table, middles, words)
         for row in range(ROWS):

@@ -133,15 +133,17 @@ def turn_length(delta: float, turns: FloatArray) -> float:
 def _end_length(delta: float, held: float, turns: FloatArray) -> float:
     """Length of a first or last turn, which begins or ends at the limit when it is held."""
     if held != 0.0:
-        return _wrapped(delta - 0.5 * turns[4]) + turns[4]
-    return turn_length(delta, turns)
+        arc: float = _wrapped(delta - 0.5 * turns[4])
+        return arc + turns[4]
+    whole: float = turn_length(delta, turns)
+    return whole
 
 
 @njit("float64(float64, float64, float64[::1])", cache=True, nogil=True, error_model="numpy", inline="always")
 def _least_length(delta: float, held: float, turns: FloatArray) -> float:
     """No such turn is shorter: from straight to straight, two clothoids of the limit's sharpness."""
     if held != 0.0:
-        return turns[4]
+        return float(turns[4])
     return 2.0 * (1.0 - 1e-9) * math.sqrt(max(delta, 0.0) * turns[4])
 
 
