@@ -134,7 +134,7 @@ def _end_length(delta: float, held: float, turns: FloatArray) -> float:
     """Length of a first or last turn, which begins or ends at the limit when it is held."""
     if held != 0.0:
         arc: float = _wrapped(delta - 0.5 * turns[4])
-        return arc + turns[4]
+        return float(arc + turns[4])
     whole: float = turn_length(delta, turns)
     return whole
 
