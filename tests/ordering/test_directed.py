@@ -17,6 +17,7 @@ from optplan.domain.ordering import EuclidCosts, MatrixCosts, OrderingProblem, S
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering._kernels.maxflow import SINK_SIDE, SOURCE_SIDE, max_flow, network
 from optplan.ordering.cutting.directed import Root, directed_bound, root, solve_directed
+from optplan.ordering.cutting.directed_branching import Choice
 from optplan.ordering.cutting.directed_graph import rooted_tour, takes_closed
 from optplan.ordering.cutting.directed_root import CutLoop
 from optplan.ordering.cutting.lp import Solution
@@ -99,6 +100,30 @@ def test_the_root_holds_for_every_solution(seed: int, closed: bool) -> None:
         if cost < incumbent - slack:
             assert cost >= reduced_cost(limited, problem, nodes) - 1e-9
     assert directed_bound(problem) <= min(costs, default=math.inf) + 1e-9
+
+
+def test_a_choice_parts_the_tours_in_two() -> None:
+    tour = rooted_tour(random_problem("matrix", 4, 5, precedence=False, start=False, end=False))
+    sizes = np.bincount(tour.cluster)
+    assert sizes.max() > 1
+    first = np.searchsorted(tour.cluster, np.arange(tour.clusters))
+    options = [range(low, low + size) for low, size in zip(first.tolist(), sizes.tolist(), strict=True)]
+    rest = [c for c in range(tour.clusters) if c != tour.root]
+    nodes = [Choice(v) for v in range(tour.nodes) if sizes[tour.cluster[v]] > 1]
+    pairs = [Choice(c, d) for c in range(tour.clusters) for d in range(tour.clusters) if c != d]
+    for order in itertools.permutations(rest):
+        for used in itertools.product(*(options[c] for c in (tour.root, *order))):
+            tails = np.array(used)
+            heads = np.roll(tails, -1)
+            clusters = tour.cluster[tails].tolist()
+            after = set(zip(clusters, [*clusters[1:], clusters[0]], strict=True))
+            for choice in (*nodes, *pairs):
+                with_it = not choice.excluded(tour, tails, heads, used=True).any()
+                without = not choice.excluded(tour, tails, heads, used=False).any()
+                assert with_it != without
+                assert with_it == (
+                    (choice.first, choice.second) in after if choice.second >= 0 else choice.first in used
+                )
 
 
 def test_a_probe_never_promises_too_much() -> None:

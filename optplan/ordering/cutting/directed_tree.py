@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from optplan.domain.arrays import FloatArray, IntArray
-from optplan.ordering.cutting.directed_branching import INTEGRAL, Brancher
+from optplan.ordering.cutting.directed_branching import INTEGRAL, Brancher, Choice
 from optplan.ordering.cutting.directed_graph import Bools
 from optplan.ordering.cutting.directed_root import CUTS, CutLoop
 
@@ -26,12 +26,12 @@ IMPROVE_EVERY = 10
 
 @dataclass(order=True)
 class Branch:
-    """A subproblem still to be looked at: tours with the arcs `used` and without those `unused`."""
+    """A subproblem still to be looked at: tours for which the choices `used` are true, and those `unused` are not."""
 
     bound: float
     number: int
-    used: tuple[tuple[int, int], ...] = field(compare=False, default=())
-    unused: tuple[tuple[int, int], ...] = field(compare=False, default=())
+    used: tuple[Choice, ...] = field(compare=False, default=())
+    unused: tuple[Choice, ...] = field(compare=False, default=())
 
 
 @dataclass
@@ -131,14 +131,12 @@ class Tree:
 
     def _out(self, branch: Branch) -> Bools:
         """(n, n) arcs that the subproblem does not have."""
-        out, cluster = self.loop.programme.out.copy(), self.loop.tour.cluster
-        for i, j in branch.unused:
-            out[i, j] = True
-        for i, j in branch.used:
-            keep = out[i, j]
-            out[cluster == cluster[i]] = True
-            out[:, cluster == cluster[j]] = True
-            out[i, j] = keep
+        out, tour = self.loop.programme.out.copy(), self.loop.tour
+        count = np.arange(tour.nodes)
+        tails, heads = np.meshgrid(count, count, indexing="ij")
+        for choices, used in ((branch.used, True), (branch.unused, False)):
+            for choice in choices:
+                out |= choice.excluded(tour, tails, heads, used)
         return out
 
     def _fix(self, branch: Branch, out: Bools) -> None:
@@ -168,10 +166,10 @@ class Tree:
         return np.array(nodes, dtype=np.int64)
 
     def _split(self, branch: Branch, bound: float) -> list[Branch]:
-        """With an arc, and without it."""
-        i, j = self.brancher.choose()
+        """With a choice, and without it."""
+        choice = self.brancher.choose()
         number = 2 * self.loop.nodes
         return [
-            Branch(bound, number + 1, (*branch.used, (i, j)), branch.unused),
-            Branch(bound, number + 2, branch.used, (*branch.unused, (i, j))),
+            Branch(bound, number + 1, (*branch.used, choice), branch.unused),
+            Branch(bound, number + 2, branch.used, (*branch.unused, choice)),
         ]
