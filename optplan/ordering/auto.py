@@ -6,10 +6,10 @@ import math
 
 from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason, StopRule
+from optplan.ordering.beam import dense, scout
 from optplan.ordering.bounds import tree_bound
 from optplan.ordering.cuts import prove_by_cuts, refuse_no_form
 from optplan.ordering.ideals import prove_by_ideals, refuse_loose_precedence
-from optplan.ordering.ideals_network import closure
 from optplan.ordering.method import OPTIMAL_GAP, Method, Run
 from optplan.ordering.opened import opened
 from optplan.ordering.search import search
@@ -17,17 +17,17 @@ from optplan.ordering.subsets import MAX_WORK, subset_programme, transitions
 
 BRUTE_SPEED = 3e8
 """Transitions of the subset programme in a second, cautiously."""
-DENSE = 0.1
-"""Share of the pairs of clusters that precedence has to order for the programme over order ideals to be the first."""
 SMALL, DIRECTED = 150, 300
 """Up to this many clusters cutting planes often prove the optimum; of directed problems, whose bounds are better,
 more than of others."""
-CUT_CLUSTERS = 500
-"""Up to this many they are worth their time as a bound."""
+CUT_CLUSTERS, CUT_DIRECTED = 500, 1000
+"""Up to this many they are worth their time as a bound; directed problems, again, of more."""
 PROOF_SECONDS = 10.0
 """For the proof when there is no time limit."""
 SHORT, EVEN, LONG = 0.15, 0.5, 0.7
 """Share of the time for the search: before a proof that is likely, one that is not, and when none is tried."""
+FIRST_PROOF = 0.25
+"""Share of the time left for a proof that another one follows: it ends early, or hardly at all."""
 BEFORE_PROOF = 0.03
 """Most seconds a cluster for the search before a proof, however much time there is."""
 BOUND_SHARE, FIRST_BOUND = 0.1, 0.02
@@ -54,6 +54,8 @@ def choose_and_solve(run: Run) -> StopReason:
     run.message = f"search and a bound: {size} are too many to prove the optimum"
     if proofs:
         run.message = f"search, then {' and '.join(proof.name for proof in proofs)} to prove it: {size}"
+    if IDEALS in proofs:
+        scout(run, SHORT)
     share = LONG if not proofs else SHORT if run.problem.clusters <= _small(run.problem) or IDEALS in proofs else EVEN
     stop = _searched(run, share, BEFORE_PROOF * run.problem.clusters if proofs else math.inf)
     if ended := _over(run, stop):
@@ -63,7 +65,7 @@ def choose_and_solve(run: Run) -> StopReason:
     for number, proof in enumerate(proofs):
         if ended := _over(run, stop):
             return ended
-        stop = _proved(run, proof, 1.0 / (len(proofs) - number))
+        stop = _proved(run, proof, FIRST_PROOF if number + 1 < len(proofs) else 1.0)
     if ended := _over(run, stop):
         return ended
     if math.isfinite(run.rule.seconds):
@@ -84,10 +86,9 @@ def _proofs(problem: OrderingProblem) -> list[Method]:
     """Proofs worth trying, the more hopeful first."""
     found = []
     count = problem.clusters
-    if len(problem.precedence) and IDEALS.refusal(problem) is None:
-        density = 2.0 * float(closure(count, problem.precedence).sum()) / (count * (count - 1))
-        found = [IDEALS] if density >= DENSE else []
-    if count <= CUT_CLUSTERS and CUTS.refusal(problem) is None:
+    if dense(problem) and IDEALS.refusal(problem) is None:
+        found.append(IDEALS)
+    if count <= _most(problem) and CUTS.refusal(problem) is None:
         found.append(CUTS)
     return found
 
@@ -96,6 +97,12 @@ def _small(problem: OrderingProblem) -> int:
     from optplan.ordering.cutting.undirected import undirected_form
 
     return SMALL if undirected_form(problem) is not None else DIRECTED
+
+
+def _most(problem: OrderingProblem) -> int:
+    from optplan.ordering.cutting.undirected import undirected_form
+
+    return CUT_CLUSTERS if undirected_form(problem) is not None else CUT_DIRECTED
 
 
 def _over(run: Run, stop: StopReason) -> StopReason | None:

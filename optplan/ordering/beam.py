@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from optplan.domain.arrays import IntArray
+from optplan.domain.ordering import OrderingProblem
 from optplan.domain.stop import StopReason
 from optplan.ordering.cutoff import Cutoff, cutoff
-from optplan.ordering.ideals_bound import Relaxation
+from optplan.ordering.ideals_bound import Relaxation, refuse_large_tables
 from optplan.ordering.ideals_layers import Sweep, most_states, sweep
+from optplan.ordering.ideals_network import closure
 from optplan.ordering.local import nearest_neighbour
 from optplan.ordering.method import Run
 from optplan.ordering.search import search
 
+DENSE = 0.1
+"""Share of the pairs of clusters that precedence has to order for narrow sweeps to end in good paths."""
 FIRST_WIDTH = 32
+SCOUT_WIDTH = 128
+"""Widest sweep that looks for nothing but a path to begin with."""
 GROWTH = 4
 BOTH_WIDTH = 256
 """From this width on only the direction with the better bound is followed."""
@@ -38,6 +45,7 @@ class Hunt:
     goal: Cutoff
     direction: int = 0
     floor: float = -math.inf
+    reached: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     polished: float = math.inf
 
     def sweep(self, direction: int, width: int) -> Sweep:
@@ -49,7 +57,10 @@ class Hunt:
             return nothing._replace(stopped=run.stop() or StopReason.TIME)
         found = sweep(run, relaxation.sides[direction], guide, width, self.goal.of(run))
         if len(found.nodes):
-            run.offer(found.nodes[::-1] if direction else found.nodes)
+            nodes = found.nodes[::-1] if direction else found.nodes
+            run.offer(nodes)
+            if not len(self.reached) or run.problem.cost_of(nodes) < run.problem.cost_of(self.reached):
+                self.reached = nodes
         self.goal.conclude(run, found.floor, relaxation.rounding)
         return found._replace(stopped=StopReason.FINISHED) if self.goal.closed(run) else found
 
@@ -61,18 +72,36 @@ class Hunt:
         relaxation.eliminate(run, self.goal.of(run))
 
     def polish(self) -> None:
-        """Take the best path to a local optimum."""
-        if self.run.cost < self.polished:
-            part = self.run.within(math.inf, POLISH_EACH * self.run.problem.clusters)
+        """Take the best path that sweeps reached to a local optimum: another one than where a given path leads."""
+        run = self.run
+        if len(self.reached) and (cost := run.problem.cost_of(self.reached)) < self.polished:
+            part = run.within(math.inf, POLISH_EACH * run.problem.clusters)
+            part.start = self.reached
             search(part)
             part.iterations = 0
-            self.run.adopt(part)
-            self.polished = self.run.cost
+            run.adopt(part)
+            self.polished = cost
 
 
 def beam_search(run: Run) -> StopReason:
     """Sweeps of growing width until the optimum is proved. One iteration is one width."""
     return widen(Hunt(run, Relaxation(run.problem), cutoff(run.problem)), most_states(run.problem))
+
+
+def dense(problem: OrderingProblem) -> bool:
+    """Whether precedence leaves so few orders that narrow sweeps are the way to a good path."""
+    if problem.closed or not len(problem.precedence) or refuse_large_tables(problem):
+        return False
+    count = problem.clusters
+    return 2.0 * float(closure(count, problem.precedence).sum()) >= DENSE * count * (count - 1)
+
+
+def scout(run: Run, share: float) -> None:
+    """A path from narrow sweeps, in at most a share of the time left: a better beginning than nearest neighbours."""
+    part = run.within(share * run.clock.remaining if math.isfinite(run.rule.seconds) else math.inf)
+    widen(Hunt(part, Relaxation(run.problem), cutoff(run.problem)), SCOUT_WIDTH)
+    part.iterations = 0
+    run.adopt(part)
 
 
 def widen(hunt: Hunt, widest: int, width: int = FIRST_WIDTH) -> StopReason:

@@ -221,7 +221,8 @@ def test_time_limit() -> None:
     answer = solve(strokes(60), "search", StopRule(seconds=0.3))
     assert answer.stopped is StopReason.TIME
     assert answer.seconds < 20
-    automatic = solve(strokes(60), "auto", StopRule(seconds=1.0))
+    # on a fast machine sixty strokes are proved in a second
+    automatic = solve(strokes(150), "auto", StopRule(seconds=1.0))
     assert automatic.status is Status.FEASIBLE
     assert 0 < automatic.bound < automatic.cost
     assert "search" in automatic.message

@@ -55,7 +55,10 @@ def network(count: int, tails: IntArray, heads: IntArray) -> Network:
 
 @njit(cache=True, nogil=True)
 def _levels(net: Network, residual: FloatArray, closed: IntArray, source: int, sink: int, level: IntArray) -> bool:
-    """Arcs from each vertex to the sink, -1 where it cannot be reached; whether the source reaches it."""
+    """Arcs from each vertex to the sink, -1 where it cannot be reached; whether the source reaches it.
+
+    When it does, vertices as far as the source or farther, which no shortest path uses, may be left out.
+    """
     count = len(level)
     queue = np.empty(count, dtype=np.int64)
     level[:] = -1
@@ -68,9 +71,11 @@ def _levels(net: Network, residual: FloatArray, closed: IntArray, source: int, s
             u = net.head[s]
             if level[u] < 0 and closed[u] == 0 and residual[net.mate[s]] > TOLERANCE:
                 level[u] = level[v] + 1
+                if u == source:
+                    return True
                 queue[end] = u
                 end += 1
-    return bool(level[source] >= 0)
+    return False
 
 
 @njit(cache=True, nogil=True)

@@ -33,10 +33,11 @@ def separate(
     begin: int,
     work: int,
     enough: float,
-    marks: Marks,
+    sides: Marks,
+    which: IntArray,
     values: FloatArray,
 ) -> tuple[int, int]:
-    """Look for violated cuts, pair after pair, until `work` arcs have been looked at or `marks` is full.
+    """Look for violated cuts, pair after pair, until `work` arcs have been looked at or `sides` is full.
 
     Parameters
     ----------
@@ -47,7 +48,8 @@ def separate(
     pairs : (p, 2) clusters a before b
     begin : the first pair to look at
     enough : a cut of this value is not violated
-    marks, values : (c, n + 1) and (c,) output: the cuts, and their left-hand sides at these capacities
+    sides, which, values : (c, n + 1), (c,) and (c,) output: of each cut 1 for vertices in S, its pair, and its
+        left-hand side at these capacities; `mark_cuts` makes marks of them
 
     Returns
     -------
@@ -57,10 +59,9 @@ def separate(
     vertices = len(net.first) - 1
     closed = np.zeros(vertices, dtype=np.int64)
     side = np.empty(vertices, dtype=np.int64)
-    inside = np.zeros(len(cluster), dtype=np.int64)
     found = 0
     for p in range(begin, len(pairs)):
-        if work <= 0 or found + 2 > len(marks):
+        if work <= 0 or found + 2 > len(sides):
             return found, p
         work -= 4 * (len(capacity) + vertices)
         a, b = pairs[p, 0], pairs[p, 1]
@@ -72,56 +73,71 @@ def separate(
             continue
         different = False
         for v in range(len(cluster)):
-            inside[v] = 1 if side[v] == SOURCE_SIDE and closed[v] == 0 else 0
+            sides[found, v] = 1 if side[v] == SOURCE_SIDE and closed[v] == 0 else 0
             different |= side[v] == 0 and closed[v] == 0
-        _mark(inside, closed, cluster, order, a, b, marks[found])
-        values[found] = value
+        which[found], values[found] = p, value
         found += 1
         if different:
             for v in range(len(cluster)):
-                inside[v] = 1 if side[v] != SINK_SIDE and closed[v] == 0 else 0
-            _mark(inside, closed, cluster, order, a, b, marks[found])
-            values[found] = value
+                sides[found, v] = 1 if side[v] != SINK_SIDE and closed[v] == 0 else 0
+            which[found], values[found] = p, value
             found += 1
     return found, len(pairs)
 
 
 @njit(cache=True, nogil=True)
-def _mark(inside: IntArray, closed: IntArray, cluster: IntArray, order: IntArray, a: int, b: int, mark: Marks) -> None:
-    """The marks of the cut around S (`inside`) between clusters a and b, with X, Y and so W as large as they get."""
+def mark_cuts(sides: Marks, which: IntArray, pairs: IntArray, cluster: IntArray, order: IntArray) -> Marks:
+    """The marks (c, n + 1) of cuts that `separate` found, with X, Y and so W as large as they get."""
+    marks = np.zeros(sides.shape, dtype=np.uint8)
     count = len(order)
-    whole = np.full(count, 3, dtype=np.int64)  # bits: 1 wholly in S, 2 wholly outside; neither when not open
-    for v in range(len(cluster)):
-        whole[cluster[v]] &= 0 if closed[v] else (1 if inside[v] else 2)
-    first = np.zeros(count, dtype=np.int64)
-    last = np.zeros(count, dtype=np.int64)
-    first[a] = last[b] = 1
-    for c in range(count):
-        if whole[c] == 1 and order[c, b]:
-            first[c] = 1
-    for c in range(count):
-        if whole[c] == 2 and c != b:
-            after = True
-            for x in range(count):
-                if first[x] and not order[x, c]:
-                    after = False
+    whole = np.empty(count, dtype=np.int64)  # bits: 1 wholly in S, 2 wholly outside; neither when not open
+    first = np.empty(count, dtype=np.int64)
+    last = np.empty(count, dtype=np.int64)
+    for k in range(len(sides)):
+        inside, mark = sides[k], marks[k]
+        a, b = pairs[which[k], 0], pairs[which[k], 1]
+        whole[:] = 3
+        for v in range(len(cluster)):
+            c = cluster[v]
+            whole[c] &= 0 if order[c, a] | order[b, c] else (1 if inside[v] else 2)
+        first[0], last[0] = a, b
+        firsts = lasts = 1
+        for c in range(count):
+            if whole[c] == 1 and order[c, b] and c != a:
+                first[firsts] = c
+                firsts += 1
+        for c in range(count):
+            if whole[c] == 2 and c != b:
+                after = True
+                for x in range(firsts):
+                    if not order[first[x], c]:
+                        after = False
+                        break
+                if after:
+                    last[lasts] = c
+                    lasts += 1
+        # where `whole` is, from here on: 1 for what must be before X or behind Y
+        for c in range(count):
+            banned = False
+            for x in range(firsts):
+                if order[c, first[x]]:
+                    banned = True
                     break
-            last[c] = 1 if after else 0
-    banned = np.zeros(count, dtype=np.int64)
-    for c in range(count):
-        for other in range(count):
-            if (first[other] and order[c, other]) or (last[other] and order[other, c]):
-                banned[c] = 1
-                break
-    for v in range(len(cluster)):
-        c = cluster[v]
-        mark[v] = 0
-        if banned[c] == 0:
-            mark[v] = TAIL if inside[v] else HEAD
-        if c == a and inside[v] == 0:
-            mark[v] |= LEAVES
-        if c == b and inside[v] == 1:
-            mark[v] |= ENTERS
+            if not banned:
+                for y in range(lasts):
+                    if order[last[y], c]:
+                        banned = True
+                        break
+            whole[c] = 1 if banned else 0
+        for v in range(len(cluster)):
+            c = cluster[v]
+            if whole[c] == 0:
+                mark[v] = TAIL if inside[v] else HEAD
+            if c == a and inside[v] == 0:
+                mark[v] |= LEAVES
+            if c == b and inside[v] == 1:
+                mark[v] |= ENTERS
+    return marks
 
 
 @njit(cache=True, nogil=True)

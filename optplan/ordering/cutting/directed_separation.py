@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,14 @@ MOST = 2_000
 """Most cuts looked at in a round, before the best are chosen."""
 VIOLATION = 0.01
 """By how much a cut has to be violated."""
+
+
+class Found(NamedTuple):
+    """Violated cuts: 1 for vertices in S (c, n + 1), the pair of clusters (c, 2), the left-hand side (c,)."""
+
+    sides: Marks
+    pairs: IntArray
+    values: FloatArray
 
 
 @dataclass
@@ -64,17 +72,30 @@ class Separator:
     def violated(self, tails: IntArray, heads: IntArray, values: FloatArray, most: int, *, deep: bool) -> Marks:
         """Up to `most` cuts (c, n + 1) that the point violates, the most violated ones; of all pairs when `deep`."""
         net, capacity = self._support(tails, heads, values)
-        marks, lacks, _ = self._look(net, capacity, self.basic, 2**62)
-        if deep and len(marks) < most // 4 and len(self.further):
+        found, _ = self._look(net, capacity, self.basic, 2**62)
+        if deep and len(found.values) < most // 4 and len(self.further):
             turned = np.roll(self.further, -self._next, axis=0)
-            more, lack, seen = self._look(net, capacity, turned, DEEP * WORK)
+            more, seen = self._look(net, capacity, turned, DEEP * WORK)
             self._next = (self._next + seen) % len(turned)
-            marks, lacks = np.concatenate([marks, more]), np.concatenate([lacks, lack])
-        if len(marks) == 0:
-            return marks
-        _, chosen = np.unique(marks, axis=0, return_index=True)
-        chosen = chosen[np.argsort(lacks[chosen], kind="stable")][:most]
-        return marks[chosen]
+            sides, pairs = np.concatenate([found.sides, more.sides]), np.concatenate([found.pairs, more.pairs])
+            found = Found(sides, pairs, np.concatenate([found.values, more.values]))
+        return self._marks(found, most)
+
+    def _marks(self, found: Found, most: int) -> Marks:
+        """Of the most violated cuts, without doubles: marks take longer than to find them."""
+        from optplan.ordering._kernels.separate import mark_cuts
+
+        best = np.argsort(found.values, kind="stable")
+        marks = np.zeros((0, self.tour.nodes + 1), dtype=np.uint8)
+        for begin in range(0, len(best), most):
+            some = best[begin : begin + most]
+            rows = mark_cuts(found.sides[some], np.arange(len(some)), found.pairs[some], self._cluster, self.tour.order)
+            marks = np.concatenate([marks, rows])
+            _, chosen = np.unique(marks, axis=0, return_index=True)
+            marks = marks[np.sort(chosen)]
+            if len(marks) >= most:
+                break
+        return marks[:most]
 
     def _support(self, tails: IntArray, heads: IntArray, values: FloatArray) -> tuple[Network, FloatArray]:
         from optplan.ordering._kernels.maxflow import network
@@ -93,15 +114,16 @@ class Separator:
         capacity[net.slot] = np.concatenate([values[used], visits[nodes], visits[nodes]])
         return net, capacity
 
-    def _look(self, net: Network, capacity: FloatArray, pairs: IntArray, work: int) -> tuple[Marks, FloatArray, int]:
-        """Cuts between pairs of clusters, their values, and how many pairs were looked at."""
+    def _look(self, net: Network, capacity: FloatArray, pairs: IntArray, work: int) -> tuple[Found, int]:
+        """Cuts between pairs of clusters, and how many pairs were looked at."""
         from optplan.ordering._kernels.separate import separate
 
-        marks = np.zeros((min(MOST, 2 * len(pairs) + 2), self.tour.nodes + 1), dtype=np.uint8)
-        lacks = np.zeros(len(marks))
+        room = min(MOST, 2 * len(pairs) + 2)
+        sides = np.zeros((room, self.tour.nodes + 1), dtype=np.uint8)
+        which, values = np.zeros(room, dtype=np.int64), np.zeros(room)
         pairs = np.ascontiguousarray(pairs)
         found = seen = 0
-        while seen < len(pairs) and found + 2 <= len(marks) and work > 0 and not self.ended():
+        while seen < len(pairs) and found + 2 <= room and work > 0 and not self.ended():
             more, seen = separate(
                 net,
                 capacity,
@@ -112,8 +134,9 @@ class Separator:
                 seen,
                 WORK,
                 1.0 - VIOLATION,
-                marks[found:],
-                lacks[found:],
+                sides[found:],
+                which[found:],
+                values[found:],
             )
             found, work = found + more, work - WORK
-        return marks[:found], lacks[:found], seen
+        return Found(sides[:found], pairs[which[:found]], values[:found]), seen

@@ -20,6 +20,8 @@ WORTH = 0.02
 """Share of the subproblem's gap that a round has to close to be followed by another."""
 AGE = 12
 """Solves after which a slack cut is dropped."""
+DIVE = 0.25
+"""Share of the gap by which a child's bound may be above the least one for the child to be looked at at once."""
 IMPROVE_EVERY = 10
 """Subproblems between two guesses at a better tour."""
 
@@ -38,7 +40,7 @@ class Branch:
 class Tree:
     """A search by branch and cut, which begins where a cut loop ended ("done").
 
-    Best bound first, but a subproblem's first child is looked at at once.
+    Best bound first, but a subproblem's first child is looked at at once unless its bound is much above the least.
 
     Parameters
     ----------
@@ -73,9 +75,12 @@ class Tree:
             if loop.upper < known:
                 self._tighten()
                 children = [child for child in children if child.bound < loop.cutoff]
-            branch = children[0] if children else None
             for child in children[1:]:
                 heapq.heappush(self.open, child)
+            branch = children[0] if children else None
+            if branch and branch.bound > loop.bound + DIVE * (loop.cutoff - loop.bound):
+                heapq.heappush(self.open, branch)
+                branch = None
         # there is nothing below the cut-off, and whole costs leave no room above it
         loop.prove(min(self.least, loop.upper if loop.grain else loop.cutoff))
         return True
