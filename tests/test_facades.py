@@ -340,6 +340,26 @@ def test_exports(good: Plan, tmp_path: Path) -> None:
     assert len(json.loads((tmp_path / "stops-json").read_text())["stops"]) == len(rows)
 
 
+def test_exports_switch_the_water(good: Plan, tmp_path: Path) -> None:
+    """On while the lift stands before the wall, off on its way; the time table has the same seconds."""
+    stops = stop_rows(good)
+    for name in ("tool", "schedule"):
+        op.export_plan(good, name, tmp_path / name)
+    commands = list(csv.DictReader(io.StringIO((tmp_path / "tool").read_text())))
+    assert [row["tool"] for row in commands] == ["wash", "off"] * len(stops)
+    times = [float(row["t"]) for row in commands]
+    assert times[0::2] == pytest.approx([row["arrive"] for row in stops], abs=1e-5)
+    assert times[1::2] == pytest.approx([row["leave"] for row in stops], abs=1e-5)
+    table = list(csv.DictReader(io.StringIO((tmp_path / "schedule").read_text())))
+    washed = [row for row in table if row["what"] == "stop"]
+    assert [float(row["begin"]) for row in washed] == pytest.approx([row["arrive"] for row in stops], abs=1e-3)
+    assert [float(row["end"]) for row in washed] == pytest.approx([row["leave"] for row in stops], abs=1e-3)
+    assert {row["direction"] for row in table} == {""}
+    with pytest.raises(InputError, match="leaves the plane"):
+        op.export_plan(good, "txt", tmp_path / "txt")
+    assert not (tmp_path / "txt").exists()
+
+
 @pytest.mark.parametrize("kind", ["flat", "corner", "round"])
 def test_pictures_and_films(kind: str, tmp_path: Path) -> None:
     plan = planned(JOBS[kind], fewest="minimal", pattern="hexagon", travel="lift")
