@@ -106,7 +106,7 @@ def test_a_corner_off_the_plane_is_not_just_dropped(tmp_path: Path) -> None:
     """Without it the outline loses 6 m2, or the window half of its 4 m2."""
     with pytest.raises(InputError, match=r"line 4: point q0 is off.*the outline has 66 m2 instead of 72 m2"):
         _read(tmp_path / "a.csv", _outlier([(12, 13, 0)], "outline"))
-    window = [(2, 10.5, 2), (4, 10, 2), (4, 10, 4), (2, 10, 4)]
+    window: list[tuple[float, float, float]] = [(2, 10.5, 2), (4, 10, 2), (4, 10, 4), (2, 10, 4)]
     with pytest.raises(InputError, match=r"line 4: point q0 is off.*area 'win' has 2 m2 instead of 4 m2"):
         _read(tmp_path / "b.csv", _outlier(window, "win"))
 
