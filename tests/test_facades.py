@@ -282,7 +282,7 @@ def test_walls_that_face_inwards_are_found() -> None:
     job = corner()
     front = job.walls[0]
     wrong = replace(job, walls=(replace(front, origin=array([4, 0, 0]), across=array([-1, 0, 0])), job.walls[1]))
-    with pytest.raises(InputError, match="inside the building"):
+    with pytest.raises(InputError, match="faces into the building"):
         planned(wrong)
 
 

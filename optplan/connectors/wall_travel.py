@@ -20,11 +20,9 @@ from optplan.domain.facade import Facade
 from optplan.domain.options import Options
 from optplan.domain.result import Cover
 from optplan.domain.robot import Boom, Robot
+from optplan.geometry.building import SAME, ways_around
 from optplan.geometry.visibility import Ways
 from optplan.geometry.walls import edge_before, lifted, normals, places, unrolled, vertices_of
-
-SAME = 1e-9
-"""m: places nearer than this are one."""
 
 
 class AxisLimits(NamedTuple):
@@ -103,7 +101,7 @@ class Travel:
             self.flat[own] = unrolled(wall, self.feet[own], self.normal[own], self.boom.standoff)
         self._around: dict[tuple[int, tuple[int, ...]], Ways] = {}
         self._plans: dict[tuple[tuple[float, float], tuple[float, float]], FloatArray | None] = {}
-        if len(job.walls) > 1:
+        if len(job.walls) > 1 or job.building is not None:
             self._refuse_inside()
 
     @property
@@ -254,20 +252,7 @@ class Travel:
     @cached_property
     def _building(self) -> Ways:
         """What the robot travels around from wall to wall: the ground plan and the stand-off before it."""
-        import shapely
-
-        lines = [_plan_in_space(self.job, k) for k in range(len(self.job.walls))]
-        away = self.boom.standoff
-        parts = [
-            shapely.LineString(line).buffer(away, cap_style="flat", join_style="mitre") for line in lines if away > 0
-        ]
-        ring = np.concatenate(lines) if self.job.building is None else self.job.building
-        apart = np.append(True, np.linalg.norm(np.diff(ring, axis=0), axis=1) > SAME)
-        if apart.sum() >= 3:
-            ground = shapely.Polygon(ring[apart])
-            if ground.is_valid and ground.area > 0:
-                parts.append(ground.buffer(away, join_style="mitre") if away > 0 else ground)
-        return Ways(shapely.union_all(parts))
+        return ways_around(self.job, self.boom.standoff)
 
     def _refuse_inside(self) -> None:
         import shapely
@@ -277,19 +262,10 @@ class Travel:
             name = self.job.walls[int(self.wall[int(np.argmax(inside))])].name
             raise InputError(
                 f"wall {name!r} has stops inside the building, or too near another wall; expected walls in their order "
-                "around it, `across` to the right as seen from outside, or the ground plan as `building`",
+                "around it, `across` to the right as seen from outside; an inner corner needs the ground plan as "
+                "`building`",
                 self.job.name,
             )
-
-
-def _plan_in_space(job: Facade, number: int) -> FloatArray:
-    """(k, 2) m, the plan of a wall seen from above."""
-    wall = job.walls[number]
-    _at, plan = vertices_of(wall)
-    if wall.plan is None:
-        low, high = float(wall.outline[:, 0].min()), float(wall.outline[:, 0].max())
-        plan = np.array([[low, 0.0], [high, 0.0]])
-    return lifted(wall, plan, np.zeros(len(plan)))[:, :2]
 
 
 def _mapped(number: int, job: Facade, line: FloatArray, away: float) -> FloatArray:

@@ -110,6 +110,7 @@ class Facade:
     radius : of a washing circle, m; None: what the robot reaches at its stand-off
     tau, width : the rule of order: i before j when y_j - y_i >= tau * radius and |x_i - x_j| < width * radius
     building : (n, 2) m, its ground plan, which the robot travels around; None: the walls' own, joined in their order
+    ground : m, its height, below which no stop is; None: the lowest corner of the walls
     notes : the load report
     """
 
@@ -120,6 +121,7 @@ class Facade:
     width: float = 2.0
     building: FloatArray | None = None
     notes: tuple[Note, ...] = ()
+    ground: float | None = None
 
     def __post_init__(self) -> None:
         if not self.walls:
@@ -131,6 +133,8 @@ class Facade:
             raise InputError(f"the circle radius is {self.radius} m; expected a finite number above 0")
         if not (math.isfinite(self.tau) and math.isfinite(self.width)):
             raise InputError(f"the rule of order has tau {self.tau} and width {self.width}; expected finite numbers")
+        if self.ground is not None and not math.isfinite(self.ground):
+            raise InputError(f"the ground is at {self.ground} m; expected a finite height")
         if self.building is not None:
             object.__setattr__(self, "building", _ring(self.building, "the building"))
         if len(self.walls) > 1 and any(abs(float(wall.up[2]) - 1) > 1e-6 for wall in self.walls):

@@ -58,7 +58,8 @@ def verify_facade(plan: Plan, job: Facade) -> Report:
         checks += unchecked(["visits"], "the plan does not say in which order stops were chosen")
     else:
         checks.append(_strokes.visits(path, samples, plan.visits))
-    checks += [_strokes.tool(path, robot), _pose(cover, placed, boom), _reach(job, cover, placed, boom)]
+    checks += [_strokes.tool(path, robot), _pose(cover, placed, boom), _ground(job, cover)]
+    checks.append(_reach(job, cover, placed, boom))
     coverage, areas = _coverage(job, cover, placed, options)
     moves = _moves(path, samples, cover)
     checks += [coverage, _no_go(job, path, samples, placed, options), _walls(job, path, samples)]
@@ -91,6 +92,23 @@ def _pose(cover: Cover, placed: list[OnWall], boom: Boom) -> Check:
     if value > GAP:
         detail = f"Stop {cover.strokes[worst].id} is not {boom.standoff:g} m before its wall, or does not face it."
     return held("stand-off", value, 0.0, "m", None, detail, slack=GAP)
+
+
+def _ground(job: Facade, cover: Cover) -> Check:
+    """How far the lowest stop is below the ground, m; stops that the job gives are where they are."""
+    feet = [float((wall.origin[2] + wall.outline @ np.array([wall.across[2], wall.up[2]])).min()) for wall in job.walls]
+    ground = min(feet) if job.ground is None else job.ground
+    given = {wall.name for wall in job.walls if wall.stops is not None or wall.up[2] <= 0}
+    deep = [ground - float(stroke.points[0, 2]) for stroke in cover.strokes if stroke.points.shape[1] == 3]
+    worst = int(np.argmax(deep)) if deep else -1
+    value = max(deep[worst], 0.0) if deep else 0.0
+    if value <= GAP:
+        return held("ground", value, 0.0, "m", detail="No stop is below the ground.", slack=GAP)
+    stop = cover.strokes[worst]
+    detail = f"Stop {stop.id} is {value:.3g} m below the ground"
+    if all(s.element in given for s, d in zip(cover.strokes, deep, strict=True) if d > GAP):
+        return noted("ground", value, "m", f"{detail}, as the job gives it.")
+    return held("ground", value, 0.0, "m", place_of(stop.points[0]), f"{detail}.", slack=GAP)
 
 
 def _reach(job: Facade, cover: Cover, placed: list[OnWall], boom: Boom) -> Check:
