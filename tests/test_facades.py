@@ -171,6 +171,36 @@ def test_judge_measures_pose_and_speed(good: Plan) -> None:
     assert "time" in _spoilt(good, trajectory=hasty)
 
 
+def test_judge_asks_for_the_time_that_washing_takes(good: Plan) -> None:
+    """Stops of no time at all, everywhere: in the path, in the strokes, and in the timetable made for them."""
+    from optplan.pipeline import plan_from
+
+    assert good.path is not None
+    assert good.cover is not None
+    assert good.trajectory is not None
+    cover = replace(good.cover, strokes=tuple(replace(s, dwell=0.0) for s in good.cover.strokes))
+    hasty = replace(good, path=replace(good.path, dwell=0 * good.path.dwell), trajectory=None, cover=cover)
+    report = plan_from(hasty, "time").report
+    assert report is not None
+    check = next(check for check in report.checks if check.name == "dwell")
+    assert (check.verdict.value, check.value) == ("failed", 20.0)
+    longer = tuple(replace(s, dwell=25.0) if k == 3 else s for k, s in enumerate(good.cover.strokes))
+    assert "dwell" in _spoilt(good, cover=replace(good.cover, strokes=longer))
+    # a timetable that stands only half as long as the path says
+    pause = np.append(0.0, np.diff(good.trajectory.t) * np.where(np.diff(good.trajectory.s) > 0, 1.0, 0.5))
+    assert "time" in _spoilt(good, trajectory=replace(good.trajectory, t=np.cumsum(pause)))
+
+
+def test_judge_takes_circles_no_larger_than_the_arm_reaches(good: Plan) -> None:
+    """A plan that does not say how large they are: what a shorter arm washes decides."""
+    assert good.cover is not None
+    unsaid = replace(good, cover=replace(good.cover, radii=()))
+    assert _spoilt(unsaid) == []
+    assert isinstance(good.robot.mobility, Boom)
+    short = replace(good.robot, mobility=replace(good.robot.mobility, reach=1.15))
+    assert "coverage" in _spoilt(unsaid, robot=short)
+
+
 def test_judge_checks_what_the_solver_claims(good: Plan) -> None:
     assert good.ordering is not None
     assert "cost" in _spoilt(good, ordering=replace(good.ordering, cost=good.ordering.cost * 1.01))

@@ -50,7 +50,7 @@ def stop_rows(plan: Plan) -> list[dict[str, Any]]:
         place = unrolled(wall, foot, normal, robot.standoff)[0]
         values = (
             *(number, stroke.id, wall.name, *place.tolist(), *foot[0].tolist(), *normal[0].tolist()),
-            *(robot.standoff, cover.radii[stop] if cover.radii else job.radius, at - moved),
+            *(robot.standoff, cover.radii[stop] if cover.radii else job.radius or robot.radius, at - moved),
             *(float(t[knots]), float(t[knots]) + float(path.dwell[row]), float(path.dwell[row])),
             float(path.dwell[row]) * robot.flow,
         )

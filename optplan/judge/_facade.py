@@ -21,7 +21,7 @@ from optplan.judge import _continuity, _motion, _ordering, _strokes, _water
 from optplan.judge._findings import GAP, RELATIVE, finite, held, noted, place_of, unchecked
 from optplan.judge._integrate import Samples, integrate
 from optplan.judge._speeds import speeds
-from optplan.judge._walls import OnWall, farthest, on_walls, washable
+from optplan.judge._walls import OnWall, farthest, on_walls, radii_of, washable
 from optplan.judge._washed import bare_spots, missed_area
 
 SHARP = math.radians(45)
@@ -52,15 +52,16 @@ def verify_facade(plan: Plan, job: Facade) -> Report:
         why = "the robot is no boom lift" if cover is not None and cover.strokes else "the plan has no stops"
         return Report((*checks, *unchecked(["strokes", "coverage", "reach", "order"], why)), ())
     boom, placed = robot.mobility, on_walls(job, cover)
+    radii = radii_of(job, cover, placed, boom.reach)
     done, deviation, _, _ = _strokes.strokes(path, samples, cover, GAP)
-    checks += [done, deviation, _water.order(job, path, cover, placed, options)]
+    checks += [done, deviation, _water.order(job, path, cover, placed, radii, options), _dwell(path, cover, boom)]
     if plan.visits is None:
         checks += unchecked(["visits"], "the plan does not say in which order stops were chosen")
     else:
         checks.append(_strokes.visits(path, samples, plan.visits))
     checks += [_strokes.tool(path, robot), _pose(cover, placed, boom), _ground(job, cover)]
-    checks.append(_reach(job, cover, placed, boom))
-    coverage, areas = _coverage(job, cover, placed, options)
+    checks.append(_reach(job, cover, placed, radii, boom))
+    coverage, areas = _coverage(job, placed, radii, options)
     moves = _moves(path, samples, cover)
     checks += [coverage, _no_go(job, path, samples, placed, options), _walls(job, path, samples)]
     figures += _figures(path, moves, boom) + areas
@@ -111,24 +112,39 @@ def _ground(job: Facade, cover: Cover) -> Check:
     return held("ground", value, 0.0, "m", place_of(stop.points[0]), f"{detail}.", slack=GAP)
 
 
-def _reach(job: Facade, cover: Cover, placed: list[OnWall], boom: Boom) -> Check:
+def _dwell(path: Path, cover: Cover, boom: Boom) -> Check:
+    """By how much a stop is too short to wash, s: each takes the robot's time, or its stroke's when that is longer."""
+    rows = np.flatnonzero((path.stroke >= 0) & (path.stroke < len(cover.strokes)))
+    asked = np.array([max(cover.strokes[k].dwell, boom.dwell) for k in path.stroke[rows].tolist()])
+    owner, spent = path.stroke[rows], np.bincount(path.stroke[rows], path.dwell[rows], len(cover.strokes))
+    short = asked - spent[owner] if len(rows) else np.zeros(1)
+    worst = int(np.argmax(short))
+    value = max(float(short[worst]), 0.0)
+    if value <= RELATIVE * boom.dwell:
+        return held("dwell", 0.0, 0.0, "s", detail=f"Every stop takes the {boom.dwell:g} s that washing takes.")
+    name, had = cover.strokes[int(owner[worst])].id, spent[owner[worst]]
+    detail = f"Stop {name} takes {had:g} s; washing takes {asked[worst]:g} s."
+    return held("dwell", value, 0.0, "s", place_of(path.start[int(rows[worst])]), detail)
+
+
+def _reach(job: Facade, cover: Cover, placed: list[OnWall], radii: FloatArray, boom: Boom) -> Check:
     """Greatest distance from a stop to what it has to wash, m."""
-    if not cover.radii:
-        return noted("reach", 0.0, "m", "Not checked: the plan does not say how large the circles are.")
     far = [
-        farthest(job.walls[p.wall], p, r) if p.wall >= 0 else math.inf for p, r in zip(placed, cover.radii, strict=True)
+        farthest(job.walls[p.wall], p, r) if p.wall >= 0 else math.inf
+        for p, r in zip(placed, radii.tolist(), strict=True)
     ]
     worst = int(np.argmax(far))
     detail = f"Stop {cover.strokes[worst].id} has to reach farthest."
+    if not cover.radii:
+        detail = "The plan does not say how large its circles are: they are taken as large as the arm reaches."
     return held("reach", finite(far[worst]), boom.reach, "m", None, detail, slack=RELATIVE * boom.reach)
 
 
-def _coverage(job: Facade, cover: Cover, placed: list[OnWall], options: Options) -> tuple[Check, Figures]:
+def _coverage(job: Facade, placed: list[OnWall], radii: FloatArray, options: Options) -> tuple[Check, Figures]:
     """m2 of wall that no circle washes when every stop is off by the tolerance, in the worst direction."""
     import shapely
 
     missed, total, worked, beside, spot, name = 0.0, 0.0, 0.0, 0.0, None, ""
-    radii = np.array(cover.radii or [job.radius or 1.0] * len(cover.strokes))
     for number, wall in enumerate(job.walls):
         own = [k for k, stop in enumerate(placed) if stop.wall == number]
         centres = np.array([[placed[k].x, placed[k].y] for k in own]).reshape(-1, 2)
