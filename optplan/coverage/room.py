@@ -12,7 +12,7 @@ from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.facade import Facade, Wall
 from optplan.geometry.building import open_spans, plan_in_space, ways_around
-from optplan.geometry.walls import outward, places
+from optplan.geometry.walls import edge_before, outward, places, vertices_of
 
 UPRIGHT = math.sin(math.radians(10))
 """Height gained a metre up a wall, below which it is a floor or a ceiling."""
@@ -76,6 +76,8 @@ def rooms_of(job: Facade, standoff: float, radii: list[float]) -> list[Room]:
 
     Raises InputError for a wall that faces into its building, that is far from it, or that is there twice.
     """
+    for wall in job.walls:
+        _refuse_tight(wall, standoff)
     ground = ground_of(job)
     lows = [_lowest(wall, ground, standoff) for wall in job.walls]
     if len(job.walls) == 1 and job.building is None:
@@ -111,6 +113,33 @@ def _lowest(wall: Wall, ground: float, standoff: float) -> float:
     if rise < UPRIGHT:
         return -math.inf
     return (ground - float(wall.origin[2]) - standoff * float(outward(wall)[2])) / rise
+
+
+def _refuse_tight(wall: Wall, standoff: float) -> None:
+    """Raises InputError where a wall bends towards its outside more tightly than the stand-off, or faces itself."""
+    import shapely
+
+    if wall.flat:
+        return
+    at, plan = vertices_of(wall)
+    corners, mitres = edge_before(wall, standoff)
+    step = np.diff(plan, axis=0)
+    size = np.hypot(*step.T)
+    side = standoff * np.column_stack([-step[:, 1], step[:, 0]]) / size[:, None]
+    line = np.concatenate([plan[:1] + side[:1], mitres, plan[-1:] + side[-1:]])
+    # sides of the line before the wall that run backwards
+    back = np.flatnonzero((np.diff(line, axis=0) * step).sum(axis=1) <= 0)
+    x = float((at[back[0]] + at[back[0] + 1]) / 2) if len(back) else None
+    if x is None:
+        near = shapely.distance(shapely.LineString(plan), shapely.points(line))
+        if near.min() < standoff * (1 - 1e-6):
+            x = float(np.concatenate([at[:1], corners, at[-1:]])[int(np.argmin(near))])
+    if x is not None:
+        raise InputError(
+            f"the plan bends more tightly than the stand-off of {standoff:g} m at x = {x:.3g} m: the lift has no room "
+            "before the wall; expected wider bends, or a smaller stand-off",
+            f"wall {wall.name!r}",
+        )
 
 
 def _refuse_far(job: Facade) -> None:

@@ -18,6 +18,10 @@ SHARPEST = math.radians(60)
 """Where the plan of one wall turns by more, it is two walls."""
 SAME = 1e-9
 """m within which two vertices are one."""
+MEETS = 1e-6
+"""m within which a plan meets itself."""
+MOST_CORNERS = 3000
+"""Of a polygon, or a plan."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +90,10 @@ class Wall:
                 f"the plan turns by {math.degrees(float(bend.max())):.0f} degrees at a corner; expected at most "
                 f"{math.degrees(SHARPEST):.0f}: make it two walls, or give more points"
             )
+        meets = _self_meeting(plan)
+        if meets is not None:
+            x, away = plan[meets].tolist()
+            raise InputError(f"the plan meets itself at ({x:g}, {away:g}); expected a line that does not")
         low, high = float(self.outline[:, 0].min()), float(self.outline[:, 0].max())
         if low < -1e-6 or high > length.sum() + 1e-6:
             raise InputError(
@@ -198,11 +206,41 @@ def _inside(ring: FloatArray, point: FloatArray) -> bool:
     return bool((passed & (point[0] < x)).sum() % 2)
 
 
+def _self_meeting(line: FloatArray) -> int | None:
+    """A vertex of a polyline at which, or behind which, it meets itself, or None; its ends may be one place."""
+    count = len(line)
+    if count > MOST_CORNERS:
+        raise InputError(f"the plan has {count} points; at most {MOST_CORNERS} are taken")
+    begin, step = line[:-1], np.diff(line, axis=0)
+    square = (step**2).sum(axis=1)
+    side = np.arange(count - 1)
+    closed = np.abs(line[0] - line[-1]).max() <= MEETS
+    for k in range(count):
+        away = line[k] - begin
+        share = np.clip((away * step).sum(axis=1) / square, 0, 1)
+        touched = np.hypot(*(away - share[:, None] * step).T) <= MEETS
+        touched &= (side != k) & (side != k - 1)
+        if closed and k in (0, count - 1):
+            touched[[0, -1]] = False
+        if k < count - 1:
+            ends_apart = _turn(step[k], away) * _turn(step[k], away - step) < 0
+            own_apart = _turn(step, away) * _turn(step, line[k + 1] - begin) < 0
+            touched |= ends_apart & own_apart & (np.abs(side - k) > 1)
+        if touched.any():
+            return k
+    return None
+
+
+def _turn(one: FloatArray, other: FloatArray) -> FloatArray:
+    made: FloatArray = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
+    return made
+
+
 def _crossing(ring: FloatArray) -> tuple[int, int] | None:
     """Two sides of a ring that meet though they are not neighbours, or None."""
     count = len(ring)
-    if count > 3000:
-        raise InputError(f"a polygon has {count} corners; at most 3000 are taken")
+    if count > MOST_CORNERS:
+        raise InputError(f"a polygon has {count} corners; at most {MOST_CORNERS} are taken")
     sides, _ = _sides(ring, ring)
     after = np.roll(sides, -1, axis=1)
     apart = sides * after < 0

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import optplan as op
+from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.facade import Facade, Wall
 from optplan.domain.robot import Boom
@@ -133,3 +134,46 @@ def test_a_leaning_wall_is_washed_from_above_the_ground() -> None:
     assert plan.report.ok
     assert plan.cover is not None
     assert min(stroke.points[0, 2] for stroke in plan.cover.strokes) >= 0
+
+
+def _bent(plan: FloatArray) -> Wall:
+    length = math.floor(1e6 * float(np.hypot(*np.diff(plan, axis=0).T).sum())) / 1e6
+    return Wall("bent", array([[0, 0], [length, 0], [length, 3], [0, 3]]), plan=plan)
+
+
+def _arc(radius: float, turn: float, sides: int) -> FloatArray:
+    """From (0, 0) along the first axis, bending towards the outside."""
+    angle = np.linspace(0, turn, sides + 1)
+    return radius * np.column_stack([np.sin(angle), 1 - np.cos(angle)])
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        _arc(4.0, 1.2 * 2 * math.pi, 60),
+        # a loop whose sides cross between their ends
+        np.concatenate([array([[0, 0]]), _arc(1.0, 1.5 * math.pi, 20) + array([3, 0]), array([[2, -1]])]),
+    ],
+)
+def test_plans_that_meet_themselves_are_refused(plan: FloatArray) -> None:
+    with pytest.raises(InputError, match="the plan meets itself"):
+        _bent(plan)
+
+
+def test_plans_may_close() -> None:
+    plan = _arc(4.0, 2 * math.pi, 48)
+    plan[-1] = plan[0]
+    assert _bent(plan).plan is not None
+
+
+def test_bends_without_room_for_the_lift_are_refused() -> None:
+    robot = op.load_robot("boom-washer")
+    tight = Facade("tight", (_bent(_arc(0.6, 2.0, 12)),))
+    with pytest.raises(InputError, match=r"wall 'bent': the plan bends more tightly than the stand-off of 0.75 m"):
+        op.cover(tight, robot)
+    bend = _arc(0.6, math.pi, 12) + np.array([3.0, 0.0])
+    slot = np.concatenate([np.zeros((1, 2)), bend, np.array([[0.0, 1.2]])])
+    with pytest.raises(InputError, match="bends more tightly"):
+        op.cover(Facade("slot", (_bent(slot),)), robot)
+    wide = Facade("wide", (_bent(_arc(1.0, 1.5, 12)),))
+    assert op.cover(wide, robot).strokes
