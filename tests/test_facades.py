@@ -498,6 +498,11 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkey
     assert run("plan", "wall.svg", *flags, "-o", "other") == 2
     assert "crosses the outline" in capsys.readouterr().err
     assert not Path("other").exists()
+    # what is found out while covering names the file, too
+    Path("small.json").write_text(json.dumps({"version": "1.5", "kind": "facade", "name": "s", "radius": 9,
+                                              "outline": [[0, 0], [1, 0], [1, 1], [0, 1]]}))  # fmt: skip
+    assert run("plan", "small.json", "-q", "-o", "other") == 2
+    assert capsys.readouterr().err.startswith("error: small.json: wall 'wall': a circle radius of 9 m is more than")
     case = json.loads(op.instance("washing/case1").read_text())
     case["circles"] = case["circles"][:-3]
     Path("case.json").write_text(json.dumps(case))

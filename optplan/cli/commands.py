@@ -71,6 +71,7 @@ from optplan.cli.settings import (
     Water,
     WorkSpeed,
     config_text,
+    facade_file,
     pose,
     read_config,
     settings_of,
@@ -277,7 +278,8 @@ def _plan_and_write(
             iterations=order.iterations,
             cancelled=lambda: bool(wished),
         )
-        plan = op.plan(read, machine, options, tell, rule)
+        with facade_file(read, job):
+            plan = op.plan(read, machine, options, tell, rule)
     op.save_plan(plan, targets[0], overwrite=force)
     for picture in targets[1:3]:
         op.draw(plan, picture, overwrite=force)
@@ -343,7 +345,8 @@ def _stage(
             cancelled=lambda: bool(wished),
         )
         run: Callable[..., Plan] = plan_from if rest else run_stage
-        made = run(earlier, stage, tell, rule)
+        with facade_file(earlier.job, file):
+            made = run(earlier, stage, tell, rule)
     save_plan(made, target, overwrite=force)
     good = not (stage == "order" and made.visits is None) and (made.report is None or made.report.ok)
     if json:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -327,6 +328,13 @@ def with_entries(job: Job, texts: list[str] | None) -> Job:
             raise InputError("only elements of drawings have entry vertices", "--entry")
         job = job.with_element(id, entry=int(vertex))
     return job
+
+
+def facade_file(job: Job, file: Path) -> AbstractContextManager[None]:
+    """Puts the file in front of what is wrong with a facade, which is found out while it is covered."""
+    from optplan.domain.facade import Facade
+
+    return located(str(file)) if isinstance(job, Facade) else nullcontext()
 
 
 def _toml(value: Any) -> str:

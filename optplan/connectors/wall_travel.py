@@ -21,7 +21,7 @@ from optplan.domain.options import Options
 from optplan.domain.result import Cover
 from optplan.domain.robot import Boom, Robot
 from optplan.geometry.building import SAME, ways_around
-from optplan.geometry.visibility import Ways
+from optplan.geometry.visibility import MOST_CORNERS, Ways
 from optplan.geometry.walls import edge_before, lifted, normals, places, unrolled, vertices_of
 
 
@@ -231,7 +231,8 @@ class Travel:
         if (wall, without) not in self._around:
             parts = [part for k, part in enumerate(self._obstacles[wall]) if k not in without]
             area = affinity.scale(shapely.union_all(parts), xfact=self.options.wash.horizontal, origin=(0, 0))
-            self._around[wall, without] = Ways(area)
+            most = MOST_CORNERS if self.options.wash.travel == "around" else None
+            self._around[wall, without] = Ways(area, most)
         return self._around[wall, without]
 
     def _from_wall_to_wall(self, i: int, j: int) -> FloatArray | None:

@@ -10,7 +10,7 @@ import numpy as np
 from optplan.coverage.circles import Circles, fewest_circles
 from optplan.coverage.room import UPRIGHT, Room, rooms_of
 from optplan.domain.arrays import FloatArray, IntArray
-from optplan.domain.errors import InputError, located
+from optplan.domain.errors import InputError, LimitError, located
 from optplan.domain.facade import Facade, Wall
 from optplan.domain.job import Note
 from optplan.domain.options import Options
@@ -20,6 +20,7 @@ from optplan.domain.result import Cover
 from optplan.domain.robot import Boom, Robot
 from optplan.domain.stroke import Stroke
 from optplan.domain.washing import WashOptions
+from optplan.geometry.visibility import MOST_CORNERS
 from optplan.geometry.walls import normals, places, reach_radius
 from optplan.ordering.circles import lower_first
 
@@ -46,6 +47,7 @@ def cover_facade(job: Facade, robot: Robot, options: Options, progress: Progress
     radii: list[float] = []
     notes: list[Note] = []
     _refuse_floors(job, wash)
+    _refuse_many_corners(job, wash)
     sizes = [radius_of(job, wall, boom) for wall in job.walls]
     with located(job.name):
         rooms = rooms_of(job, boom.standoff, sizes)
@@ -101,6 +103,23 @@ def _refuse_floors(job: Facade, wash: WashOptions) -> None:
             raise InputError(
                 f"its up ({up}) does not point upwards, from where the water runs; expected a positive third number, "
                 "or the rule 'none'",
+                f"wall {wall.name!r}",
+            )
+
+
+def _refuse_many_corners(job: Facade, wash: WashOptions) -> None:
+    """Raises LimitError, before the work of covering, where the ways around no-go areas would have too many corners."""
+    import shapely
+
+    if wash.travel != "around":
+        return
+    for wall in job.walls:
+        joined = shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in wall.no_go])
+        count = len(np.unique(shapely.get_coordinates(joined), axis=0))
+        if count > MOST_CORNERS:
+            raise LimitError(
+                f"its no-go areas have {count} corners, around which ways are looked for; at most {MOST_CORNERS}: "
+                "simplify them, or travel 'lift' or 'straight'",
                 f"wall {wall.name!r}",
             )
 

@@ -10,9 +10,11 @@ import pytest
 
 import optplan as op
 from optplan.domain.arrays import FloatArray
-from optplan.domain.errors import InputError
+from optplan.domain.errors import InputError, LimitError
 from optplan.domain.facade import Facade, Wall
+from optplan.domain.options import Options
 from optplan.domain.robot import Boom
+from optplan.domain.washing import WashOptions
 from tests.facades import corner, flat, planned
 from tests.strategies import array
 
@@ -134,6 +136,22 @@ def test_a_leaning_wall_is_washed_from_above_the_ground() -> None:
     assert plan.report.ok
     assert plan.cover is not None
     assert min(stroke.points[0, 2] for stroke in plan.cover.strokes) >= 0
+
+
+def test_too_many_corners_to_go_around_are_said_before_the_cover() -> None:
+    """151 windows have 604 corners; passing them further from the wall needs no ways around them."""
+    windows = tuple(
+        array([[x, y], [x + 0.1, y], [x + 0.1, y + 0.1], [x, y + 0.1]])
+        for x, y in [(0.3 + 0.2 * (k % 23), 0.3 + 0.2 * (k // 23)) for k in range(151)]
+    )
+    job = replace(flat(), walls=(replace(flat().walls[0], no_go=windows),))
+    robot = op.load_robot("boom-washer")
+    with pytest.raises(LimitError, match="wall 'wall': its no-go areas have 604 corners"):
+        op.cover(job, robot, Options(wash=WashOptions(travel="around")))
+    stopped = replace(job, walls=(replace(job.walls[0], stops=array([[0.95, 0.95], [4.05, 0.95]])),))
+    lifted = planned(stopped, travel="lift", rule="none")
+    assert lifted.path is not None
+    assert lifted.path.length.sum() == pytest.approx(3.1 + 2)
 
 
 def _bent(plan: FloatArray) -> Wall:
