@@ -325,6 +325,14 @@ def test_start_of_the_robot() -> None:
     assert plan.path.start[0] == pytest.approx([5.0, -0.75, 0.0])
 
 
+def test_given_stops_that_leave_something_bare_are_told() -> None:
+    """As published, the circles of case 1 leave 7.7 cm2; those of case 2 leave nothing."""
+    for name, words in (("case1", "132 stops as they are given leave 7.7 cm2 unwashed, most of it near (10.8, 19.5)"),
+                        ("case2", "111 stops as they are given")):  # fmt: skip
+        made = op.cover(op.read(op.instance(f"washing/{name}")), BOOM)
+        assert [note.text for note in made.notes] == [words]
+
+
 def test_published_solvers_order_a_facade() -> None:
     """The five of the literature by name; blind ones may find nothing legal, which is said."""
     job = flat()

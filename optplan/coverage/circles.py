@@ -13,12 +13,14 @@ from optplan.coverage.room import Room
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.errors import InputError, LimitError
 from optplan.domain.washing import WashOptions
-from optplan.geometry.arrangements import MARGIN, Faces, faces_of, without_supersets
+from optplan.geometry.arrangements import MARGIN, STEP, Faces, faces_of, without_supersets
 
 TRIED = 24
 """Placements of a pattern whose circles are left out one by one."""
 MIXED = 5
 """Placements whose circles are the candidates of the exact model."""
+ROUND = 256
+"""Corners of a quarter circle where what is left bare is measured."""
 MAX_STOPS = 3000
 """Most circles of one wall."""
 
@@ -81,6 +83,24 @@ def fewest_circles(area: Any, radius: float, options: WashOptions, room: Room | 
             cells.add(kind)
             mixed.append(tried[k][0].centres)
     return _exact(area, np.concatenate(mixed), kept[best], found.laid, size, options.effort)
+
+
+def bare_parts(area: Any, centres: FloatArray, radius: float) -> tuple[float, FloatArray] | None:
+    """What circles leave of an area: m2, and the middle (2,) of the largest part; None where they wash all of it."""
+    import shapely
+
+    faces = faces_of(area, centres, radius)
+    bare = faces.points[np.diff(faces.member.indptr) == 0]
+    if len(bare) == 0:
+        return None
+    discs = shapely.union_all(shapely.buffer(shapely.points(centres), radius, quad_segs=ROUND))
+    parts = shapely.get_parts(area.difference(discs))
+    # only parts that really are there: discs are polygons here
+    near = shapely.distance(parts[:, None], shapely.points(bare)[None]).min(axis=1) <= STEP * radius
+    if not near.any():
+        return None
+    largest = max(parts[near], key=lambda part: part.area)
+    return float(shapely.area(parts[near]).sum()), shapely.get_coordinates(largest.representative_point())[0]
 
 
 def _alone(area: Any, size: float, room: Room) -> Circles | None:

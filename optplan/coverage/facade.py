@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from optplan.coverage.circles import Circles, fewest_circles
+from optplan.coverage.circles import Circles, bare_parts, fewest_circles
 from optplan.coverage.room import UPRIGHT, Room, rooms_of
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.errors import InputError, LimitError, located
@@ -143,7 +143,13 @@ def _stops(wall: Wall, radius: float, wash: WashOptions, room: Room, notes: list
     area = region_of(wall)
     if wall.stops is not None:
         points = np.asarray(wall.stops)
-        notes.append(Note("notice", wall.name, f"{len(points)} stops as they are given"))
+        bare = bare_parts(area, points, radius)
+        if bare is not None:
+            left, (x, y) = bare
+            told = f"as they are given leave {_size(left)} unwashed, most of it near ({x:.1f}, {y:.1f})"
+        else:
+            told = "as they are given"
+        notes.append(Note("notice", wall.name, f"{_count(len(points))} {told}"))
     else:
         if wash.tolerance >= radius:
             raise InputError(f"a tolerance of {wash.tolerance:g} m leaves nothing of circles of {radius:g} m radius")
@@ -152,6 +158,14 @@ def _stops(wall: Wall, radius: float, wash: WashOptions, room: Room, notes: list
         notes.append(Note("notice", wall.name, _told(found)))
     # rows count as level though rounding may lift one end of them
     return points[np.lexsort((points[:, 0], np.round(points[:, 1], 6)))]
+
+
+def _size(area: float) -> str:
+    return f"{area:.3g} m2" if area >= 0.01 else f"{1e4 * area:.2g} cm2"
+
+
+def _count(stops: int) -> str:
+    return "1 stop" if stops == 1 else f"{stops} stops"
 
 
 def _told(found: Circles) -> str:
