@@ -412,6 +412,24 @@ def test_pictures_and_films(kind: str, tmp_path: Path) -> None:
     assert (tmp_path / "flat.png").stat().st_size > 5000
 
 
+def test_the_way_stays_on_top_of_what_is_washed_later(good: Plan) -> None:
+    from optplan.plot.facade_film import WASHED, facade_stage
+
+    assert isinstance(good.job, Facade)
+    assert good.trajectory is not None
+    stage = facade_stage(good, good.job, np.linspace(0, good.trajectory.duration, 40), 300, "film")
+    for moment in range(0, len(stage.motion), 7):
+        stage.frame(moment)
+    stage.frame(len(stage.motion) - 1)
+    standing = stage.motion.tool > 0
+    moved = np.hypot(np.diff(stage.motion.x), np.diff(stage.motion.y)) > 0.2
+    between = np.flatnonzero(moved & ~standing[1:])
+    places = stage.ground.pixels(np.column_stack([stage.motion.x, stage.motion.y])[between])
+    red = tuple(int(WASHED.travel[k : k + 2], 16) for k in (1, 3, 5))
+    assert len(places) > 10
+    assert all(stage.sheet.getpixel((round(float(x)), round(float(y)))) == red for x, y in places)
+
+
 BAD = {
     "larger than the facade": (flat(), {}, 50.0, "more than the wall"),
     "beyond the reach": (flat(), {}, 1.5, "reaches"),
