@@ -333,6 +333,18 @@ def test_given_stops_that_leave_something_bare_are_told() -> None:
         assert [note.text for note in made.notes] == [words]
 
 
+@pytest.mark.parametrize(("start", "words"), [((3.0, -5.0), "5 m below the ground"), ((3000.0, 1.0), "beside the wall"),
+                                              ((3.0, 300.0), "beside the wall")])  # fmt: skip
+def test_a_start_that_is_nowhere_is_refused(start: tuple[float, float], words: str) -> None:
+    with pytest.raises(InputError, match=f"--start: .*{words}"):
+        op.plan(flat(), BOOM, Options(order=OrderOptions(start=start), wash=WashOptions(fewest="pattern")))
+
+
+def test_a_list_of_no_stops_is_refused() -> None:
+    with pytest.raises(InputError, match="stops is an empty list"):
+        Wall("wall", flat().walls[0].outline, stops=np.zeros(0))
+
+
 def test_published_solvers_order_a_facade() -> None:
     """The five of the literature by name; blind ones may find nothing legal, which is said."""
     job = flat()
@@ -430,6 +442,23 @@ def test_the_way_stays_on_top_of_what_is_washed_later(good: Plan) -> None:
     assert all(stage.sheet.getpixel((round(float(x)), round(float(y)))) == red for x, y in places)
 
 
+@pytest.mark.parametrize("kind", ["flat", "corner"])
+def test_the_building_fills_its_picture(kind: str, tmp_path: Path) -> None:
+    from PIL import Image
+
+    op.draw(planned(JOBS[kind], fewest="minimal", pattern="hexagon"), tmp_path / "a.png", in_space=True)
+    dark = np.array(Image.open(tmp_path / "a.png").convert("L")) < 250
+    rows, columns = np.flatnonzero(dark.any(axis=1)), np.flatnonzero(dark.any(axis=0))
+    assert np.ptp(rows) > 0.8 * dark.shape[0]
+    assert np.ptp(columns) > 0.8 * dark.shape[1]
+
+
+def test_one_step_for_all_axes() -> None:
+    from optplan.plot.building import _step
+
+    assert [_step(x) for x in (0.13, 0.2, 0.21, 1.4, 4.0, 30.0)] == pytest.approx([0.2, 0.2, 0.5, 2, 5, 50])
+
+
 BAD = {
     "larger than the facade": (flat(), {}, 50.0, "more than the wall"),
     "beyond the reach": (flat(), {}, 1.5, "reaches"),
@@ -517,6 +546,16 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkey
     assert "planned and verified" in capsys.readouterr().out
     assert run("check", "wall-plan/plan.json") == 0
     assert run("show", "wall-plan/plan.json", "--3d", "-o", "space.png") == 0
+    for other in ("--animate", "--convergence"):
+        assert run("show", "wall-plan/plan.json", "--3d", other, "-o", "other.png") == 2
+        assert f"one of --3d and {other}" in capsys.readouterr().err
+    assert run("plan", "wall.svg", *flags, "--travel", "lift", "--lift", "0", "-o", "other") == 2
+    assert capsys.readouterr().err.startswith("error: --lift: ")
+    assert run("plan", "wall.svg", *flags, "--placement", "-1", "-o", "other") == 2
+    assert capsys.readouterr().err.startswith("error: --placement: ")
+    Path("case.json").write_text(op.instance("washing/case1").read_text())
+    assert run("order", "case.json") == 2
+    assert "is a job, of which there is no plan yet" in capsys.readouterr().err
     assert run("order", "wall-plan/plan.json", "--metric", "time", "-o", "timed.json", "--iterations", "50", "-q") == 0
     assert " s between strokes" in capsys.readouterr().out
     assert run("plan", "wall.svg", *flags, "-o", "wall-plan") == 2

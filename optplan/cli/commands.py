@@ -12,6 +12,7 @@ import typer
 from optplan.cli import output
 from optplan.cli.fields import field_command
 from optplan.cli.fleets import fleet_command
+from optplan.cli.inputs import facade_file, is_job, refuse_job
 from optplan.cli.listings import instances, robots, schema, solvers
 from optplan.cli.looking import check, export, show, simulate
 from optplan.cli.settings import (
@@ -71,7 +72,6 @@ from optplan.cli.settings import (
     Water,
     WorkSpeed,
     config_text,
-    facade_file,
     pose,
     read_config,
     settings_of,
@@ -332,6 +332,8 @@ def _stage(
     if target.suffix.lower() in {".svg", ".svgz"}:
         hint = "another file" if out else "--output"
         raise InputError(f"is a drawing, which a plan would overwrite; say {hint}", str(target))
+    if "robot" not in flags:
+        refuse_job(stage, file)
     if target.exists() and not force:
         hint = "say --output for a new file, or --force to replace it"
         raise InputError(f"exists already; {hint}", str(target))
@@ -386,24 +388,11 @@ def _load(file: Path, flags: dict[str, Any]) -> Plan:
     from optplan.robots import USUAL_ROBOTS
 
     robot = flags.get("robot")
-    if "robot" in flags and _is_job(file):
+    if "robot" in flags and is_job(file):
         job = op.read(file)
         return Plan(job, op.load_robot(robot or USUAL_ROBOTS[type(job).__name__]), Options())
     plan = op.load_plan(file)
     return plan if robot is None else replace(plan, robot=op.load_robot(robot))
-
-
-def _is_job(file: Path) -> bool:
-    """Whether a file is a job, to begin with, and no plan."""
-    if file.suffix.lower() != ".json":
-        return file.suffix.lower() in (".svg", ".svgz", ".dxf", ".csv")
-    if not file.is_file():
-        return False
-    from optplan.schema.base import parse_json
-    from optplan.schema.files import read_bytes
-
-    data = parse_json(read_bytes(file), str(file))
-    return isinstance(data, dict) and ("kind" in data or "circles" in data) and "job" not in data
 
 
 @app.command()

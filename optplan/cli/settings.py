@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -224,7 +223,13 @@ def settings_of(base: dict[str, Any], flags: dict[str, Any]) -> Options:
     if flags.get("link"):
         links = tables.setdefault("cover", {}).setdefault("links", [])
         tables["cover"]["links"] = [*links, *map(_link, flags["link"])]
-    return _validated(tables, "settings")
+    try:
+        return _validated(tables, "settings")
+    except InputError as error:
+        for flag, (group, name) in _PLACES.items():
+            if flags.get(flag) is not None and error.problem.startswith(f"{group} {name} "):
+                raise InputError(error.problem, f"--{flag.replace('_', '-')}") from None
+        raise
 
 
 def tables_of(options: Options) -> dict[str, Any]:
@@ -328,13 +333,6 @@ def with_entries(job: Job, texts: list[str] | None) -> Job:
             raise InputError("only elements of drawings have entry vertices", "--entry")
         job = job.with_element(id, entry=int(vertex))
     return job
-
-
-def facade_file(job: Job, file: Path) -> AbstractContextManager[None]:
-    """Puts the file in front of what is wrong with a facade, which is found out while it is covered."""
-    from optplan.domain.facade import Facade
-
-    return located(str(file)) if isinstance(job, Facade) else nullcontext()
 
 
 def _toml(value: Any) -> str:

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from optplan.coverage.room import ground_of, lowest
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.costs import ArcCosts, EuclidCosts, MatrixCosts
 from optplan.domain.errors import InputError
@@ -23,6 +24,9 @@ from optplan.domain.robot import Boom, Robot
 from optplan.geometry.building import SAME, ways_around
 from optplan.geometry.visibility import MOST_CORNERS, Ways
 from optplan.geometry.walls import edge_before, lifted, normals, places, unrolled, vertices_of
+
+MOST_BESIDE = 100.0
+"""m beside or above the first wall at which a lift may start."""
 
 
 class AxisLimits(NamedTuple):
@@ -90,6 +94,7 @@ class Travel:
         if options.order.start is not None:
             wall = job.walls[0]
             place = np.array([options.order.start])
+            _refuse_start(job, place[0], self.boom.standoff)
             self.start = len(self.wall)
             self.wall = np.append(self.wall, 0)
             self.feet = np.concatenate([self.feet, places(wall, place, self.boom.standoff)])
@@ -267,6 +272,20 @@ class Travel:
                 "`building`",
                 self.job.name,
             )
+
+
+def _refuse_start(job: Facade, place: FloatArray, standoff: float) -> None:
+    """Raises InputError for a start (x, y) on the first wall that is below the ground, or nowhere near the wall."""
+    wall = job.walls[0]
+    x, y = place.tolist()
+    low, high = wall.outline.min(axis=0), wall.outline.max(axis=0)
+    beside = float(np.maximum(np.maximum(low - place, place - high), 0.0).max())
+    expected = f"expected x along the wall {wall.name!r} and the height on it, m"
+    if beside > MOST_BESIDE:
+        raise InputError(f"the start ({x:g}, {y:g}) is {beside:g} m beside the wall; {expected}", "--start")
+    least = lowest(wall, ground_of(job), standoff)
+    if y < least - SAME:
+        raise InputError(f"the start ({x:g}, {y:g}) is {least - y:g} m below the ground; {expected}", "--start")
 
 
 def _mapped(number: int, job: Facade, line: FloatArray, away: float) -> FloatArray:

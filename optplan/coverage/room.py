@@ -79,7 +79,7 @@ def rooms_of(job: Facade, standoff: float, radii: list[float]) -> list[Room]:
     for wall in job.walls:
         _refuse_tight(wall, standoff)
     ground = ground_of(job)
-    lows = [_lowest(wall, ground, standoff) for wall in job.walls]
+    lows = [lowest(wall, ground, standoff) for wall in job.walls]
     if len(job.walls) == 1 and job.building is None:
         return [Room(low=lows[0])]
     _refuse_far(job)
@@ -107,7 +107,7 @@ def ground_of(job: Facade) -> float:
     return min(float(places(wall, wall.outline)[:, 2].min()) for wall in job.walls)
 
 
-def _lowest(wall: Wall, ground: float, standoff: float) -> float:
+def lowest(wall: Wall, ground: float, standoff: float) -> float:
     """Least y of a stop before a wall, m, that is not below the ground."""
     rise = float(wall.up[2])
     if rise < UPRIGHT:

@@ -65,9 +65,9 @@ class Wall:
                 if _cross(self.outline, hole):
                     raise InputError(f"no-go area {k} crosses the outline; expected it inside, or cut off there")
             if self.stops is not None:
-                object.__setattr__(self, "stops", frozen_floats(self.stops, "stops", (None, 2)))
                 if len(self.stops) == 0:
-                    raise InputError("there are no stops in the list; expected some, or none at all to have them found")
+                    raise InputError("stops is an empty list; expected stops, or no such list to have them found")
+                object.__setattr__(self, "stops", frozen_floats(self.stops, "stops", (None, 2)))
             for name in ("origin", "across", "up"):
                 object.__setattr__(self, name, frozen_floats(getattr(self, name), name, (3,)))
             lengths = [float(np.linalg.norm(axis)) for axis in (self.across, self.up)]

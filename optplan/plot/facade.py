@@ -194,7 +194,7 @@ def _standoff(plan: Plan) -> float:
 
 
 def _facts(plan: Plan, seen: Shown) -> list[str]:
-    facts = [f"{len(seen.wall)} stops"]
+    facts = ["1 stop" if len(seen.wall) == 1 else f"{len(seen.wall)} stops"]
     if plan.path is not None:
         facts.append(f"{_between(plan.path):.1f} m between them")
     if plan.trajectory is not None:
