@@ -424,6 +424,35 @@ def test_pictures_and_films(kind: str, tmp_path: Path) -> None:
     assert (tmp_path / "flat.png").stat().st_size > 5000
 
 
+def test_water_is_told_once(good: Plan, tmp_path: Path) -> None:
+    """As what the robot uses up; robot files that say it in their mobility are read."""
+    assert good.report is not None
+    assert good.path is not None
+    figures = {name: value for name, value, _ in good.report.figures}
+    assert figures["water"] == pytest.approx(0.1 * 20 * (good.path.stroke >= 0).sum())
+    assert sum(row["water"] for row in stop_rows(good)) == pytest.approx(figures["water"])
+    assert "supplies" in [check.name for check in good.report.checks]
+    file = tmp_path / "boom.toml"
+    text = """version = "1.5"
+name = "b"
+tool.settings = [{name = "off", width = 0}, {name = "wash", width = 2}]
+[mobility]
+kind = "boom"
+speeds = [1, 1, 1]
+acceleration = 1
+reach = 2
+dwell = 3
+flow = 0.2
+"""
+    file.write_text(text)
+    robot = op.load_robot(str(file))
+    assert robot.supplies is not None
+    assert robot.supplies.flow == pytest.approx(0.0002)
+    file.write_text(text + '[supplies]\nname = "water"\nflow = "1 L/min"\n')
+    with pytest.raises(InputError, match="the flow is here and in mobility"):
+        op.load_robot(str(file))
+
+
 def test_the_way_stays_on_top_of_what_is_washed_later(good: Plan) -> None:
     from optplan.plot.facade_film import WASHED, facade_stage
 

@@ -17,7 +17,7 @@ from optplan.domain.path import Path, Trajectory
 from optplan.domain.report import Check, Report, Verdict
 from optplan.domain.result import Cover, Plan
 from optplan.domain.robot import Boom
-from optplan.judge import _continuity, _motion, _ordering, _strokes, _water
+from optplan.judge import _continuity, _motion, _ordering, _strokes, _supplies, _water
 from optplan.judge._findings import GAP, RELATIVE, finite, held, noted, place_of, unchecked
 from optplan.judge._integrate import Samples, integrate
 from optplan.judge._speeds import speeds
@@ -64,14 +64,20 @@ def verify_facade(plan: Plan, job: Facade) -> Report:
     coverage, areas = _coverage(job, placed, radii, options)
     moves = _moves(path, samples, cover)
     checks += [coverage, _no_go(job, path, samples, placed, options), _walls(job, path, samples)]
-    figures += _figures(path, moves, boom) + areas
+    figures += _figures(path, moves) + areas
     if plan.trajectory is None:
-        checks += unchecked(["time", "rest", "axis speed", "axis acceleration"], "the plan has no speeds")
+        names = ["time", "rest", "axis speed", "axis acceleration", _supplies.NAME]
+        checks += unchecked(names, "the plan has no speeds")
     else:
         profile = speeds(path, plan.trajectory)
         checks += [_motion._time(path, plan.trajectory, profile, robot), _motion._rest(plan.trajectory)]
         checks += _axes(path, plan.trajectory, moves, job, cover, boom, options)
-        figures += _motion.durations(path, plan.trajectory, profile)[:3]
+        taken = _motion.durations(path, plan.trajectory, profile)[:3]
+        known = {name: value for name, value, _ in areas}
+        washed = known["wall area"] * (1 + known["overlap"])
+        used, amounts = _supplies.supplies(robot, washed, taken[1][1], taken[0][1])
+        checks.append(used)
+        figures += [*taken, *amounts]
     if plan.ordering is None:
         checks += unchecked(["bound", "cost"], "the plan does not say how it was ordered")
     else:
@@ -328,8 +334,8 @@ def _walls(job: Facade, path: Path, samples: Samples) -> Check:
     return held("walls", through, 0, "", spot, detail)
 
 
-def _figures(path: Path, moves: Moves, boom: Boom) -> Figures:
-    """Counts, lengths, water, and how natural the order looks: turns, and changes between left and right."""
+def _figures(path: Path, moves: Moves) -> Figures:
+    """Counts, lengths, and how natural the order looks: turns, and changes between left and right."""
     length = np.linalg.norm(moves.step, axis=1)
     unit = moves.step / np.maximum(length, 1e-300)[:, None]
     bend = np.arccos(np.clip((unit[1:] * unit[:-1]).sum(axis=1), -1, 1)) if len(unit) > 1 else np.zeros(0)
@@ -342,5 +348,4 @@ def _figures(path: Path, moves: Moves, boom: Boom) -> Figures:
         ("moves", float(length.sum()), "m"),
         ("turns", float((bend > SHARP).sum()), ""),
         ("direction changes", float((np.diff(side) != 0).sum()), ""),
-        ("water", float(path.dwell.sum()) * boom.flow, "l"),
     ]
