@@ -136,8 +136,8 @@ def _refuse_tight(wall: Wall, standoff: float) -> None:
             x = float(np.concatenate([at[:1], corners, at[-1:]])[int(np.argmin(near))])
     if x is not None:
         raise InputError(
-            f"the plan bends more tightly than the stand-off of {standoff:g} m at x = {x:.3g} m: the lift has no room "
-            "before the wall; expected wider bends, or a smaller stand-off",
+            f"the plan bends more tightly, or comes nearer to itself, than the stand-off of {standoff:g} m at x = "
+            f"{x:.3g} m: the lift has no room before the wall; expected wider bends, or a smaller stand-off",
             f"wall {wall.name!r}",
         )
 
@@ -152,7 +152,7 @@ def _refuse_far(job: Facade) -> None:
         away = float(shapely.distance(ring, shapely.LineString(plan_in_space(job, number))))
         if away > FAR:
             raise InputError(
-                f"wall {wall.name!r} is {away:.3g} m away from the building; expected the ground plan of the walls' own"
+                f"wall {wall.name!r} is {away:.3g} m away from the building; expected the ground plan of its walls"
             )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,10 @@ from optplan.geometry.walls import lifted, places, vertices_of
 
 SAME = 1e-9
 """m: places nearer than this are one."""
+ROUGH = 0.3
+"""m by which a ground plan may differ from its walls."""
+SPARE = 1.5
+"""Times what walls lie within it where that is looked at: between these places, and at corners, it may be more."""
 HAIR = 1e-6
 """m that the ends of a stretch keep from what ends it: on the border the last digit decides."""
 
@@ -38,8 +43,23 @@ def ways_around(job: Facade, away: float) -> Ways:
     if apart.sum() >= 3:
         # where measured walls pass each other by a little, loops of the ring are none of the building
         ground = shapely.make_valid(shapely.Polygon(ring[apart]))
+        behind = _behind(ground, lines)
+        if behind > SAME:
+            ground = ground.buffer(-behind, join_style="mitre")
         parts.append(ground.buffer(away, join_style="mitre") if away > 0 else ground)
     return Ways(shapely.union_all(parts))
+
+
+def _behind(ground: Any, lines: list[FloatArray]) -> float:
+    """How far walls lie within a ground plan that was measured roughly, m, with something to spare."""
+    import shapely
+
+    share = np.linspace(0.1, 0.9, 9)[:, None]
+    points = [a + share * (b - a) for line in lines for a, b in itertools.pairwise(line)]
+    places = shapely.points(np.concatenate(points))
+    depth = shapely.distance(ground.boundary, places)[shapely.contains_properly(ground, places)]
+    # walls further inside are no walls of its outside
+    return SPARE * float(depth[depth <= ROUGH].max(initial=0.0))
 
 
 Span = tuple[float, float]

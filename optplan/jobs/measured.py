@@ -29,7 +29,7 @@ MOST_OUTLIERS = 0.25
 LOST = 0.01
 """Share of an area that may depend on points that are left out."""
 ROUGH = 0.1
-"""m, standard deviation beyond which points lie in no plane."""
+"""m, standard deviation beyond which points lie in no plane; a point that is no further off is still a corner."""
 UPRIGHT = math.radians(2)
 """A wall that leans by less is taken as upright."""
 MOST_POINTS = 10_000
@@ -159,12 +159,15 @@ def _fitted(name: str, points: list[Measured], notes: list[Note]) -> tuple[Flat,
     notes.append(Note("notice", name, text))
     normal = _upright(plane.normal, name, notes)
     flat = Flat(name, plane.centre, normal, _ends(places, plane.centre, normal))
-    if len(wrong):
-        lost = _refuse_lost(flat, points, plane.outlier)
-        for k in wrong.tolist():
-            text = f"is {abs(float(plane.away[k])):.3f} m off the plane of wall {name!r}: left out{lost}"
-            notes.append(Note("ignored", f"point {points[k].id} (line {points[k].line})", text))
-    return flat, kept
+    # what is off by no more than a wall may be rough is a corner all the same, though it says nothing about the plane
+    far = plane.outlier & (np.abs(plane.away) > ROUGH)
+    lost = _refuse_lost(flat, points, far) if far.any() else ""
+    for k in wrong.tolist():
+        text = f"is {abs(float(plane.away[k])):.3f} m off the plane of wall {name!r}: "
+        text += f"left out{lost}" if far[k] else "taken where it lies on the plane"
+        where = f"point {points[k].id} (line {points[k].line})"
+        notes.append(Note("ignored" if far[k] else "changed", where, text))
+    return flat, [point for k, point in enumerate(points) if not far[k]]
 
 
 def _ends(places: FloatArray, centre: FloatArray, normal: FloatArray) -> FloatArray:

@@ -18,13 +18,13 @@ OUTSIDE = {"front": (0, -1), "right": (1, 0), "back": (0, 1), "left": (-1, 0)}
 SEEN_FROM = {"front": "4,-10,1", "right": "20,3,1", "back": "4,20,1", "left": "-10,3,1"}
 
 
-def _walls(*names: str) -> list[str]:
-    rows = []
+def _walls(*names: str, noise: float = 0.0) -> list[str]:
+    rows, random = [], np.random.default_rng(0)
     for name in names:
         k = NAMES.index(name)
         (a, b), (c, d) = CORNERS[k], CORNERS[(k + 1) % 4]
-        rows += [f"{name}{n},{x},{y},{z},,{name}" for n, (x, y, z) in
-                 enumerate([(a, b, 0), (c, d, 0), (c, d, 4), (a, b, 4)])]  # fmt: skip
+        places = np.array([(a, b, 0), (c, d, 0), (c, d, 4), (a, b, 4)]) + random.normal(0, noise, (4, 3))
+        rows += [f"{name}{n},{x},{y},{z},,{name}" for n, (x, y, z) in enumerate(places.tolist())]
     return rows
 
 
@@ -36,7 +36,7 @@ def _read(file: Path, rows: list[str]) -> Facade:
 
 
 def _faces_outside(job: Facade) -> bool:
-    return all(np.allclose(np.cross(wall.across, wall.up)[:2], OUTSIDE[wall.name], atol=1e-6) for wall in job.walls)
+    return all(np.allclose(np.cross(wall.across, wall.up)[:2], OUTSIDE[wall.name], atol=5e-3) for wall in job.walls)
 
 
 def test_every_wall_has_its_station(tmp_path: Path) -> None:
@@ -52,7 +52,7 @@ def test_every_wall_has_its_station(tmp_path: Path) -> None:
 def test_a_building_measured_all_around(tmp_path: Path, named: bool) -> None:
     """Walls that close tell what is inside, whatever their stations say; measured corners are off by some mm."""
     stations = [f"s{name},{place},station,{name if named else ''}" for name, place in SEEN_FROM.items()]
-    job = _read(tmp_path / "around.csv", [*_walls(*NAMES), *stations])
+    job = _read(tmp_path / "around.csv", [*_walls(*NAMES, noise=0.004), *stations])
     assert _faces_outside(job)
     assert job.building is not None
     plan = planned(job, fewest="minimal", pattern="hexagon", seconds=1.0)
