@@ -171,6 +171,36 @@ def test_judge_measures_pose_and_speed(good: Plan) -> None:
     assert "time" in _spoilt(good, trajectory=hasty)
 
 
+def test_judge_asks_for_the_time_that_washing_takes(good: Plan) -> None:
+    """Stops of no time at all, everywhere: in the path, in the strokes, and in the timetable made for them."""
+    from optplan.pipeline import plan_from
+
+    assert good.path is not None
+    assert good.cover is not None
+    assert good.trajectory is not None
+    cover = replace(good.cover, strokes=tuple(replace(s, dwell=0.0) for s in good.cover.strokes))
+    hasty = replace(good, path=replace(good.path, dwell=0 * good.path.dwell), trajectory=None, cover=cover)
+    report = plan_from(hasty, "time").report
+    assert report is not None
+    check = next(check for check in report.checks if check.name == "dwell")
+    assert (check.verdict.value, check.value) == ("failed", 20.0)
+    longer = tuple(replace(s, dwell=25.0) if k == 3 else s for k, s in enumerate(good.cover.strokes))
+    assert "dwell" in _spoilt(good, cover=replace(good.cover, strokes=longer))
+    # a timetable that stands only half as long as the path says
+    pause = np.append(0.0, np.diff(good.trajectory.t) * np.where(np.diff(good.trajectory.s) > 0, 1.0, 0.5))
+    assert "time" in _spoilt(good, trajectory=replace(good.trajectory, t=np.cumsum(pause)))
+
+
+def test_judge_takes_circles_no_larger_than_the_arm_reaches(good: Plan) -> None:
+    """A plan that does not say how large they are: what a shorter arm washes decides."""
+    assert good.cover is not None
+    unsaid = replace(good, cover=replace(good.cover, radii=()))
+    assert _spoilt(unsaid) == []
+    assert isinstance(good.robot.mobility, Boom)
+    short = replace(good.robot, mobility=replace(good.robot.mobility, reach=1.15))
+    assert "coverage" in _spoilt(unsaid, robot=short)
+
+
 def test_judge_checks_what_the_solver_claims(good: Plan) -> None:
     assert good.ordering is not None
     assert "cost" in _spoilt(good, ordering=replace(good.ordering, cost=good.ordering.cost * 1.01))
@@ -282,7 +312,7 @@ def test_walls_that_face_inwards_are_found() -> None:
     job = corner()
     front = job.walls[0]
     wrong = replace(job, walls=(replace(front, origin=array([4, 0, 0]), across=array([-1, 0, 0])), job.walls[1]))
-    with pytest.raises(InputError, match="inside the building"):
+    with pytest.raises(InputError, match="faces into the building"):
         planned(wrong)
 
 
@@ -293,6 +323,26 @@ def test_start_of_the_robot() -> None:
     assert failed(plan) == []
     assert plan.path is not None
     assert plan.path.start[0] == pytest.approx([5.0, -0.75, 0.0])
+
+
+def test_given_stops_that_leave_something_bare_are_told() -> None:
+    """As published, the circles of case 1 leave 7.7 cm2; those of case 2 leave nothing."""
+    for name, words in (("case1", "132 stops as they are given leave 7.7 cm2 unwashed, most of it near (10.8, 19.5)"),
+                        ("case2", "111 stops as they are given")):  # fmt: skip
+        made = op.cover(op.read(op.instance(f"washing/{name}")), BOOM)
+        assert [note.text for note in made.notes] == [words]
+
+
+@pytest.mark.parametrize(("start", "words"), [((3.0, -5.0), "5 m below the ground"), ((3000.0, 1.0), "beside the wall"),
+                                              ((3.0, 300.0), "beside the wall")])  # fmt: skip
+def test_a_start_that_is_nowhere_is_refused(start: tuple[float, float], words: str) -> None:
+    with pytest.raises(InputError, match=f"--start: .*{words}"):
+        op.plan(flat(), BOOM, Options(order=OrderOptions(start=start), wash=WashOptions(fewest="pattern")))
+
+
+def test_a_list_of_no_stops_is_refused() -> None:
+    with pytest.raises(InputError, match="stops is an empty list"):
+        Wall("wall", flat().walls[0].outline, stops=np.zeros(0))
 
 
 def test_published_solvers_order_a_facade() -> None:
@@ -340,6 +390,26 @@ def test_exports(good: Plan, tmp_path: Path) -> None:
     assert len(json.loads((tmp_path / "stops-json").read_text())["stops"]) == len(rows)
 
 
+def test_exports_switch_the_water(good: Plan, tmp_path: Path) -> None:
+    """On while the lift stands before the wall, off on its way; the time table has the same seconds."""
+    stops = stop_rows(good)
+    for name in ("tool", "schedule"):
+        op.export_plan(good, name, tmp_path / name)
+    commands = list(csv.DictReader(io.StringIO((tmp_path / "tool").read_text())))
+    assert [row["tool"] for row in commands] == ["wash", "off"] * len(stops)
+    times = [float(row["t"]) for row in commands]
+    assert times[0::2] == pytest.approx([row["arrive"] for row in stops], abs=1e-5)
+    assert times[1::2] == pytest.approx([row["leave"] for row in stops], abs=1e-5)
+    table = list(csv.DictReader(io.StringIO((tmp_path / "schedule").read_text())))
+    washed = [row for row in table if row["what"] == "stop"]
+    assert [float(row["begin"]) for row in washed] == pytest.approx([row["arrive"] for row in stops], abs=1e-3)
+    assert [float(row["end"]) for row in washed] == pytest.approx([row["leave"] for row in stops], abs=1e-3)
+    assert {row["direction"] for row in table} == {""}
+    with pytest.raises(InputError, match="leaves the plane"):
+        op.export_plan(good, "txt", tmp_path / "txt")
+    assert not (tmp_path / "txt").exists()
+
+
 @pytest.mark.parametrize("kind", ["flat", "corner", "round"])
 def test_pictures_and_films(kind: str, tmp_path: Path) -> None:
     plan = planned(JOBS[kind], fewest="minimal", pattern="hexagon", travel="lift")
@@ -352,6 +422,70 @@ def test_pictures_and_films(kind: str, tmp_path: Path) -> None:
     assert plan.trajectory is not None
     assert frames[-1]["t"] == pytest.approx(plan.trajectory.duration, abs=1e-2)
     assert (tmp_path / "flat.png").stat().st_size > 5000
+
+
+def test_water_is_told_once(good: Plan, tmp_path: Path) -> None:
+    """As what the robot uses up; robot files that say it in their mobility are read."""
+    assert good.report is not None
+    assert good.path is not None
+    figures = {name: value for name, value, _ in good.report.figures}
+    assert figures["water"] == pytest.approx(0.1 * 20 * (good.path.stroke >= 0).sum())
+    assert sum(row["water"] for row in stop_rows(good)) == pytest.approx(figures["water"])
+    assert "supplies" in [check.name for check in good.report.checks]
+    file = tmp_path / "boom.toml"
+    text = """version = "1.5"
+name = "b"
+tool.settings = [{name = "off", width = 0}, {name = "wash", width = 2}]
+[mobility]
+kind = "boom"
+speeds = [1, 1, 1]
+acceleration = 1
+reach = 2
+dwell = 3
+flow = 0.2
+"""
+    file.write_text(text)
+    robot = op.load_robot(str(file))
+    assert robot.supplies is not None
+    assert robot.supplies.flow == pytest.approx(0.0002)
+    file.write_text(text + '[supplies]\nname = "water"\nflow = "1 L/min"\n')
+    with pytest.raises(InputError, match="the flow is here and in mobility"):
+        op.load_robot(str(file))
+
+
+def test_the_way_stays_on_top_of_what_is_washed_later(good: Plan) -> None:
+    from optplan.plot.facade_film import WASHED, facade_stage
+
+    assert isinstance(good.job, Facade)
+    assert good.trajectory is not None
+    stage = facade_stage(good, good.job, np.linspace(0, good.trajectory.duration, 40), 300, "film")
+    for moment in range(0, len(stage.motion), 7):
+        stage.frame(moment)
+    stage.frame(len(stage.motion) - 1)
+    standing = stage.motion.tool > 0
+    moved = np.hypot(np.diff(stage.motion.x), np.diff(stage.motion.y)) > 0.2
+    between = np.flatnonzero(moved & ~standing[1:])
+    places = stage.ground.pixels(np.column_stack([stage.motion.x, stage.motion.y])[between])
+    red = tuple(int(WASHED.travel[k : k + 2], 16) for k in (1, 3, 5))
+    assert len(places) > 10
+    assert all(stage.sheet.getpixel((round(float(x)), round(float(y)))) == red for x, y in places)
+
+
+@pytest.mark.parametrize("kind", ["flat", "corner"])
+def test_the_building_fills_its_picture(kind: str, tmp_path: Path) -> None:
+    from PIL import Image
+
+    op.draw(planned(JOBS[kind], fewest="minimal", pattern="hexagon"), tmp_path / "a.png", in_space=True)
+    dark = np.array(Image.open(tmp_path / "a.png").convert("L")) < 250
+    rows, columns = np.flatnonzero(dark.any(axis=1)), np.flatnonzero(dark.any(axis=0))
+    assert np.ptp(rows) > 0.8 * dark.shape[0]
+    assert np.ptp(columns) > 0.8 * dark.shape[1]
+
+
+def test_one_step_for_all_axes() -> None:
+    from optplan.plot.building import _step
+
+    assert [_step(x) for x in (0.13, 0.2, 0.21, 1.4, 4.0, 30.0)] == pytest.approx([0.2, 0.2, 0.5, 2, 5, 50])
 
 
 BAD = {
@@ -441,6 +575,16 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkey
     assert "planned and verified" in capsys.readouterr().out
     assert run("check", "wall-plan/plan.json") == 0
     assert run("show", "wall-plan/plan.json", "--3d", "-o", "space.png") == 0
+    for other in ("--animate", "--convergence"):
+        assert run("show", "wall-plan/plan.json", "--3d", other, "-o", "other.png") == 2
+        assert f"one of --3d and {other}" in capsys.readouterr().err
+    assert run("plan", "wall.svg", *flags, "--travel", "lift", "--lift", "0", "-o", "other") == 2
+    assert capsys.readouterr().err.startswith("error: --lift: ")
+    assert run("plan", "wall.svg", *flags, "--placement", "-1", "-o", "other") == 2
+    assert capsys.readouterr().err.startswith("error: --placement: ")
+    Path("case.json").write_text(op.instance("washing/case1").read_text())
+    assert run("order", "case.json") == 2
+    assert "is a job, of which there is no plan yet" in capsys.readouterr().err
     assert run("order", "wall-plan/plan.json", "--metric", "time", "-o", "timed.json", "--iterations", "50", "-q") == 0
     assert " s between strokes" in capsys.readouterr().out
     assert run("plan", "wall.svg", *flags, "-o", "wall-plan") == 2
@@ -448,6 +592,11 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkey
     assert run("plan", "wall.svg", *flags, "-o", "other") == 2
     assert "crosses the outline" in capsys.readouterr().err
     assert not Path("other").exists()
+    # what is found out while covering names the file, too
+    Path("small.json").write_text(json.dumps({"version": "1.5", "kind": "facade", "name": "s", "radius": 9,
+                                              "outline": [[0, 0], [1, 0], [1, 1], [0, 1]]}))  # fmt: skip
+    assert run("plan", "small.json", "-q", "-o", "other") == 2
+    assert capsys.readouterr().err.startswith("error: small.json: wall 'wall': a circle radius of 9 m is more than")
     case = json.loads(op.instance("washing/case1").read_text())
     case["circles"] = case["circles"][:-3]
     Path("case.json").write_text(json.dumps(case))

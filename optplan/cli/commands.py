@@ -12,6 +12,7 @@ import typer
 from optplan.cli import output
 from optplan.cli.fields import field_command
 from optplan.cli.fleets import fleet_command
+from optplan.cli.inputs import facade_file, is_job, refuse_job
 from optplan.cli.listings import instances, robots, schema, solvers
 from optplan.cli.looking import check, export, show, simulate
 from optplan.cli.settings import (
@@ -277,7 +278,8 @@ def _plan_and_write(
             iterations=order.iterations,
             cancelled=lambda: bool(wished),
         )
-        plan = op.plan(read, machine, options, tell, rule)
+        with facade_file(read, job):
+            plan = op.plan(read, machine, options, tell, rule)
     op.save_plan(plan, targets[0], overwrite=force)
     for picture in targets[1:3]:
         op.draw(plan, picture, overwrite=force)
@@ -330,6 +332,8 @@ def _stage(
     if target.suffix.lower() in {".svg", ".svgz"}:
         hint = "another file" if out else "--output"
         raise InputError(f"is a drawing, which a plan would overwrite; say {hint}", str(target))
+    if "robot" not in flags:
+        refuse_job(stage, file)
     if target.exists() and not force:
         hint = "say --output for a new file, or --force to replace it"
         raise InputError(f"exists already; {hint}", str(target))
@@ -343,7 +347,8 @@ def _stage(
             cancelled=lambda: bool(wished),
         )
         run: Callable[..., Plan] = plan_from if rest else run_stage
-        made = run(earlier, stage, tell, rule)
+        with facade_file(earlier.job, file):
+            made = run(earlier, stage, tell, rule)
     save_plan(made, target, overwrite=force)
     good = not (stage == "order" and made.visits is None) and (made.report is None or made.report.ok)
     if json:
@@ -383,24 +388,11 @@ def _load(file: Path, flags: dict[str, Any]) -> Plan:
     from optplan.robots import USUAL_ROBOTS
 
     robot = flags.get("robot")
-    if "robot" in flags and _is_job(file):
+    if "robot" in flags and is_job(file):
         job = op.read(file)
         return Plan(job, op.load_robot(robot or USUAL_ROBOTS[type(job).__name__]), Options())
     plan = op.load_plan(file)
     return plan if robot is None else replace(plan, robot=op.load_robot(robot))
-
-
-def _is_job(file: Path) -> bool:
-    """Whether a file is a job, to begin with, and no plan."""
-    if file.suffix.lower() != ".json":
-        return file.suffix.lower() in (".svg", ".svgz", ".dxf", ".csv")
-    if not file.is_file():
-        return False
-    from optplan.schema.base import parse_json
-    from optplan.schema.files import read_bytes
-
-    data = parse_json(read_bytes(file), str(file))
-    return isinstance(data, dict) and ("kind" in data or "circles" in data) and "job" not in data
 
 
 @app.command()

@@ -51,6 +51,9 @@ def unwanted(flags: dict[str, Any]) -> None:
     """Refuse flags of `optplan show` that would change nothing. Raises InputError."""
     if flags["animate"] and flags["convergence"]:
         raise InputError("is no film; expected one of --animate and --convergence", "--convergence")
+    for other in ("animate", "convergence"):
+        if flags["in_space"] and flags[other]:
+            raise InputError(f"is a picture of the building; expected one of --3d and --{other}", "--3d")
     asked = [name for name in ("frames", "simulated", "duration", "speed_up", "fps", "size") if flags[name]]
     if asked and not flags["animate"]:
         raise InputError("is about a film; say --animate, too", f"--{asked[0].replace('_', '-')}")

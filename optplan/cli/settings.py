@@ -223,7 +223,13 @@ def settings_of(base: dict[str, Any], flags: dict[str, Any]) -> Options:
     if flags.get("link"):
         links = tables.setdefault("cover", {}).setdefault("links", [])
         tables["cover"]["links"] = [*links, *map(_link, flags["link"])]
-    return _validated(tables, "settings")
+    try:
+        return _validated(tables, "settings")
+    except InputError as error:
+        for flag, (group, name) in _PLACES.items():
+            if flags.get(flag) is not None and error.problem.startswith(f"{group} {name} "):
+                raise InputError(error.problem, f"--{flag.replace('_', '-')}") from None
+        raise
 
 
 def tables_of(options: Options) -> dict[str, Any]:

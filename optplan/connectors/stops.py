@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from optplan.connectors.wall_travel import SAME, Travel
+from optplan.connectors.wall_travel import Travel
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.facade import Facade
@@ -15,6 +15,7 @@ from optplan.domain.path import RAISED, Path
 from optplan.domain.result import Cover
 from optplan.domain.robot import Robot
 from optplan.domain.stroke import Traversals
+from optplan.geometry.building import SAME
 
 
 def connect_stops(visits: Traversals, job: Facade, cover: Cover, robot: Robot, options: Options) -> Path:

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from optplan.coverage.room import ground_of, lowest
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.costs import ArcCosts, EuclidCosts, MatrixCosts
 from optplan.domain.errors import InputError
@@ -20,11 +21,12 @@ from optplan.domain.facade import Facade
 from optplan.domain.options import Options
 from optplan.domain.result import Cover
 from optplan.domain.robot import Boom, Robot
-from optplan.geometry.visibility import Ways
+from optplan.geometry.building import SAME, ways_around
+from optplan.geometry.visibility import MOST_CORNERS, Ways
 from optplan.geometry.walls import edge_before, lifted, normals, places, unrolled, vertices_of
 
-SAME = 1e-9
-"""m: places nearer than this are one."""
+MOST_BESIDE = 100.0
+"""m beside or above the first wall at which a lift may start."""
 
 
 class AxisLimits(NamedTuple):
@@ -92,6 +94,7 @@ class Travel:
         if options.order.start is not None:
             wall = job.walls[0]
             place = np.array([options.order.start])
+            _refuse_start(job, place[0], self.boom.standoff)
             self.start = len(self.wall)
             self.wall = np.append(self.wall, 0)
             self.feet = np.concatenate([self.feet, places(wall, place, self.boom.standoff)])
@@ -103,7 +106,7 @@ class Travel:
             self.flat[own] = unrolled(wall, self.feet[own], self.normal[own], self.boom.standoff)
         self._around: dict[tuple[int, tuple[int, ...]], Ways] = {}
         self._plans: dict[tuple[tuple[float, float], tuple[float, float]], FloatArray | None] = {}
-        if len(job.walls) > 1:
+        if len(job.walls) > 1 or job.building is not None:
             self._refuse_inside()
 
     @property
@@ -233,7 +236,8 @@ class Travel:
         if (wall, without) not in self._around:
             parts = [part for k, part in enumerate(self._obstacles[wall]) if k not in without]
             area = affinity.scale(shapely.union_all(parts), xfact=self.options.wash.horizontal, origin=(0, 0))
-            self._around[wall, without] = Ways(area)
+            most = MOST_CORNERS if self.options.wash.travel == "around" else None
+            self._around[wall, without] = Ways(area, most)
         return self._around[wall, without]
 
     def _from_wall_to_wall(self, i: int, j: int) -> FloatArray | None:
@@ -254,20 +258,7 @@ class Travel:
     @cached_property
     def _building(self) -> Ways:
         """What the robot travels around from wall to wall: the ground plan and the stand-off before it."""
-        import shapely
-
-        lines = [_plan_in_space(self.job, k) for k in range(len(self.job.walls))]
-        away = self.boom.standoff
-        parts = [
-            shapely.LineString(line).buffer(away, cap_style="flat", join_style="mitre") for line in lines if away > 0
-        ]
-        ring = np.concatenate(lines) if self.job.building is None else self.job.building
-        apart = np.append(True, np.linalg.norm(np.diff(ring, axis=0), axis=1) > SAME)
-        if apart.sum() >= 3:
-            ground = shapely.Polygon(ring[apart])
-            if ground.is_valid and ground.area > 0:
-                parts.append(ground.buffer(away, join_style="mitre") if away > 0 else ground)
-        return Ways(shapely.union_all(parts))
+        return ways_around(self.job, self.boom.standoff)
 
     def _refuse_inside(self) -> None:
         import shapely
@@ -277,19 +268,24 @@ class Travel:
             name = self.job.walls[int(self.wall[int(np.argmax(inside))])].name
             raise InputError(
                 f"wall {name!r} has stops inside the building, or too near another wall; expected walls in their order "
-                "around it, `across` to the right as seen from outside, or the ground plan as `building`",
+                "around it, `across` to the right as seen from outside; an inner corner needs the ground plan as "
+                "`building`",
                 self.job.name,
             )
 
 
-def _plan_in_space(job: Facade, number: int) -> FloatArray:
-    """(k, 2) m, the plan of a wall seen from above."""
-    wall = job.walls[number]
-    _at, plan = vertices_of(wall)
-    if wall.plan is None:
-        low, high = float(wall.outline[:, 0].min()), float(wall.outline[:, 0].max())
-        plan = np.array([[low, 0.0], [high, 0.0]])
-    return lifted(wall, plan, np.zeros(len(plan)))[:, :2]
+def _refuse_start(job: Facade, place: FloatArray, standoff: float) -> None:
+    """Raises InputError for a start (x, y) on the first wall that is below the ground, or nowhere near the wall."""
+    wall = job.walls[0]
+    x, y = place.tolist()
+    low, high = wall.outline.min(axis=0), wall.outline.max(axis=0)
+    beside = float(np.maximum(np.maximum(low - place, place - high), 0.0).max())
+    expected = f"expected x along the wall {wall.name!r} and the height on it, m"
+    if beside > MOST_BESIDE:
+        raise InputError(f"the start ({x:g}, {y:g}) is {beside:g} m beside the wall; {expected}", "--start")
+    least = lowest(wall, ground_of(job), standoff)
+    if y < least - SAME:
+        raise InputError(f"the start ({x:g}, {y:g}) is {least - y:g} m below the ground; {expected}", "--start")
 
 
 def _mapped(number: int, job: Facade, line: FloatArray, away: float) -> FloatArray:

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from optplan.coverage.circles import Circles, fewest_circles
+from optplan.coverage.circles import Circles, bare_parts, fewest_circles
+from optplan.coverage.room import UPRIGHT, Room, rooms_of
 from optplan.domain.arrays import FloatArray, IntArray
-from optplan.domain.errors import InputError, located
+from optplan.domain.errors import InputError, LimitError, located
 from optplan.domain.facade import Facade, Wall
 from optplan.domain.job import Note
 from optplan.domain.options import Options
@@ -19,6 +20,7 @@ from optplan.domain.result import Cover
 from optplan.domain.robot import Boom, Robot
 from optplan.domain.stroke import Stroke
 from optplan.domain.washing import WashOptions
+from optplan.geometry.visibility import MOST_CORNERS
 from optplan.geometry.walls import normals, places, reach_radius
 from optplan.ordering.circles import lower_first
 
@@ -44,11 +46,15 @@ def cover_facade(job: Facade, robot: Robot, options: Options, progress: Progress
     rules: list[tuple[int, int]] = []
     radii: list[float] = []
     notes: list[Note] = []
-    for number, wall in enumerate(job.walls):
+    _refuse_floors(job, wash)
+    _refuse_many_corners(job, wash)
+    sizes = [radius_of(job, wall, boom) for wall in job.walls]
+    with located(job.name):
+        rooms = rooms_of(job, boom.standoff, sizes)
+    for number, (wall, radius) in enumerate(zip(job.walls, sizes, strict=True)):
         progress(Progress("cover", number / len(job.walls), message=wall.name))
         with located(f"wall {wall.name!r}"):
-            radius = radius_of(job, wall, boom)
-            points = _stops(wall, radius, wash, notes)
+            points = _stops(wall, radius, wash, rooms[number], notes)
             pairs = precedence_of(points, radius, wash, job)
         with located(job.name):
             _refuse_cycle(pairs, len(points), wall)
@@ -66,21 +72,56 @@ def cover_facade(job: Facade, robot: Robot, options: Options, progress: Progress
 
 
 def radius_of(job: Facade, wall: Wall, boom: Boom) -> float:
-    """Of the circles of a wall, m. Raises InputError when the arm does not reach so far, or farther than the wall."""
-    most = reach_radius(wall, boom.reach, boom.standoff)
-    radius = most if job.radius is None else job.radius
-    size = np.ptp(wall.outline, axis=0)
-    if radius > math.hypot(*size):
-        raise InputError(
-            f"a circle radius of {radius:g} m is more than the wall of {size[0]:g} x {size[1]:g} m; expected less"
-        )
-    if not 0 < radius <= most * (1 + SLACK):
-        bent = "" if wall.flat else " everywhere on this bent wall"
-        raise InputError(
-            f"circles of {radius:g} m: an arm that reaches {boom.reach:g} m from {boom.standoff:g} m before the wall "
-            f"washes {most:.4g} m{bent}; expected no more, or a nearer stand-off"
-        )
-    return radius
+    """Of the circles of a wall, m.
+
+    Raises InputError when the arm does not reach so far, or when the job asks for more than its largest wall.
+    """
+    with located(f"wall {wall.name!r}"):
+        most = reach_radius(wall, boom.reach, boom.standoff)
+        radius = most if job.radius is None else job.radius
+        if job.radius is not None:
+            largest = max((np.ptp(one.outline, axis=0) for one in job.walls), key=lambda size: math.hypot(*size))
+            if radius > math.hypot(*largest):
+                raise InputError(
+                    f"a circle radius of {radius:g} m is more than the wall of {largest[0]:g} x {largest[1]:g} m; "
+                    "expected less"
+                )
+        if not 0 < radius <= most * (1 + SLACK):
+            bent = "" if wall.flat else " everywhere on this bent wall"
+            raise InputError(
+                f"circles of {radius:g} m: an arm that reaches {boom.reach:g} m from {boom.standoff:g} m before the "
+                f"wall washes {most:.4g} m{bent}; expected no more, or a nearer stand-off"
+            )
+        return radius
+
+
+def _refuse_floors(job: Facade, wash: WashOptions) -> None:
+    """Raises InputError where water does not run down a wall, so that no rule of order makes sense."""
+    for wall in job.walls:
+        if wash.rule != "none" and float(wall.up[2]) < UPRIGHT:
+            up = ", ".join(f"{value:g}" for value in wall.up.tolist())
+            raise InputError(
+                f"its up ({up}) does not point upwards, from where the water runs; expected a positive third number, "
+                "or the rule 'none'",
+                f"wall {wall.name!r}",
+            )
+
+
+def _refuse_many_corners(job: Facade, wash: WashOptions) -> None:
+    """Raises LimitError, before the work of covering, where the ways around no-go areas would have too many corners."""
+    import shapely
+
+    if wash.travel != "around":
+        return
+    for wall in job.walls:
+        joined = shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in wall.no_go])
+        count = len(np.unique(shapely.get_coordinates(joined), axis=0))
+        if count > MOST_CORNERS:
+            raise LimitError(
+                f"its no-go areas have {count} corners, around which ways are looked for; at most {MOST_CORNERS}: "
+                "simplify them, or travel 'lift' or 'straight'",
+                f"wall {wall.name!r}",
+            )
 
 
 def region_of(wall: Wall) -> Any:
@@ -97,23 +138,39 @@ def region_of(wall: Wall) -> Any:
     return area
 
 
-def _stops(wall: Wall, radius: float, wash: WashOptions, notes: list[Note]) -> FloatArray:
+def _stops(wall: Wall, radius: float, wash: WashOptions, room: Room, notes: list[Note]) -> FloatArray:
     """(n, 2) m, from the bottom up and from left to right."""
     area = region_of(wall)
     if wall.stops is not None:
         points = np.asarray(wall.stops)
-        notes.append(Note("notice", wall.name, f"{len(points)} stops as they are given"))
+        bare = bare_parts(area, points, radius)
+        if bare is not None:
+            left, (x, y) = bare
+            told = f"as they are given leave {_size(left)} unwashed, most of it near ({x:.1f}, {y:.1f})"
+        else:
+            told = "as they are given"
+        notes.append(Note("notice", wall.name, f"{_count(len(points))} {told}"))
     else:
         if wash.tolerance >= radius:
             raise InputError(f"a tolerance of {wash.tolerance:g} m leaves nothing of circles of {radius:g} m radius")
-        found = fewest_circles(area, radius - wash.tolerance, wash)
+        found = fewest_circles(area, radius - wash.tolerance, wash, room)
         points = found.centres
         notes.append(Note("notice", wall.name, _told(found)))
     # rows count as level though rounding may lift one end of them
     return points[np.lexsort((points[:, 0], np.round(points[:, 1], 6)))]
 
 
+def _size(area: float) -> str:
+    return f"{area:.3g} m2" if area >= 0.01 else f"{1e4 * area:.2g} cm2"
+
+
+def _count(stops: int) -> str:
+    return "1 stop" if stops == 1 else f"{stops} stops"
+
+
 def _told(found: Circles) -> str:
+    if len(found.centres) == 1:
+        return "1 stop washes all of it"
     text = f"{len(found.centres)} stops, from a pattern {found.laid}"
     if found.bound >= len(found.centres):
         return f"{text}: proved the fewest of {found.candidates} candidate positions"

@@ -18,6 +18,10 @@ SHARPEST = math.radians(60)
 """Where the plan of one wall turns by more, it is two walls."""
 SAME = 1e-9
 """m within which two vertices are one."""
+MEETS = 1e-6
+"""m within which a plan meets itself."""
+MOST_CORNERS = 3000
+"""Of a polygon, or a plan."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,9 +65,9 @@ class Wall:
                 if _cross(self.outline, hole):
                     raise InputError(f"no-go area {k} crosses the outline; expected it inside, or cut off there")
             if self.stops is not None:
-                object.__setattr__(self, "stops", frozen_floats(self.stops, "stops", (None, 2)))
                 if len(self.stops) == 0:
-                    raise InputError("there are no stops in the list; expected some, or none at all to have them found")
+                    raise InputError("stops is an empty list; expected stops, or no such list to have them found")
+                object.__setattr__(self, "stops", frozen_floats(self.stops, "stops", (None, 2)))
             for name in ("origin", "across", "up"):
                 object.__setattr__(self, name, frozen_floats(getattr(self, name), name, (3,)))
             lengths = [float(np.linalg.norm(axis)) for axis in (self.across, self.up)]
@@ -86,6 +90,10 @@ class Wall:
                 f"the plan turns by {math.degrees(float(bend.max())):.0f} degrees at a corner; expected at most "
                 f"{math.degrees(SHARPEST):.0f}: make it two walls, or give more points"
             )
+        meets = _self_meeting(plan)
+        if meets is not None:
+            x, away = plan[meets].tolist()
+            raise InputError(f"the plan meets itself at ({x:g}, {away:g}); expected a line that does not")
         low, high = float(self.outline[:, 0].min()), float(self.outline[:, 0].max())
         if low < -1e-6 or high > length.sum() + 1e-6:
             raise InputError(
@@ -110,6 +118,7 @@ class Facade:
     radius : of a washing circle, m; None: what the robot reaches at its stand-off
     tau, width : the rule of order: i before j when y_j - y_i >= tau * radius and |x_i - x_j| < width * radius
     building : (n, 2) m, its ground plan, which the robot travels around; None: the walls' own, joined in their order
+    ground : m, its height, below which no stop is; None: the lowest corner of the walls
     notes : the load report
     """
 
@@ -120,6 +129,7 @@ class Facade:
     width: float = 2.0
     building: FloatArray | None = None
     notes: tuple[Note, ...] = ()
+    ground: float | None = None
 
     def __post_init__(self) -> None:
         if not self.walls:
@@ -131,6 +141,8 @@ class Facade:
             raise InputError(f"the circle radius is {self.radius} m; expected a finite number above 0")
         if not (math.isfinite(self.tau) and math.isfinite(self.width)):
             raise InputError(f"the rule of order has tau {self.tau} and width {self.width}; expected finite numbers")
+        if self.ground is not None and not math.isfinite(self.ground):
+            raise InputError(f"the ground is at {self.ground} m; expected a finite height")
         if self.building is not None:
             object.__setattr__(self, "building", _ring(self.building, "the building"))
         if len(self.walls) > 1 and any(abs(float(wall.up[2]) - 1) > 1e-6 for wall in self.walls):
@@ -194,11 +206,41 @@ def _inside(ring: FloatArray, point: FloatArray) -> bool:
     return bool((passed & (point[0] < x)).sum() % 2)
 
 
+def _self_meeting(line: FloatArray) -> int | None:
+    """A vertex of a polyline at which, or behind which, it meets itself, or None; its ends may be one place."""
+    count = len(line)
+    if count > MOST_CORNERS:
+        raise InputError(f"the plan has {count} points; at most {MOST_CORNERS} are taken")
+    begin, step = line[:-1], np.diff(line, axis=0)
+    square = (step**2).sum(axis=1)
+    side = np.arange(count - 1)
+    closed = np.abs(line[0] - line[-1]).max() <= MEETS
+    for k in range(count):
+        away = line[k] - begin
+        share = np.clip((away * step).sum(axis=1) / square, 0, 1)
+        touched = np.hypot(*(away - share[:, None] * step).T) <= MEETS
+        touched &= (side != k) & (side != k - 1)
+        if closed and k in (0, count - 1):
+            touched[[0, -1]] = False
+        if k < count - 1:
+            ends_apart = _turn(step[k], away) * _turn(step[k], away - step) < 0
+            own_apart = _turn(step, away) * _turn(step, line[k + 1] - begin) < 0
+            touched |= ends_apart & own_apart & (np.abs(side - k) > 1)
+        if touched.any():
+            return k
+    return None
+
+
+def _turn(one: FloatArray, other: FloatArray) -> FloatArray:
+    made: FloatArray = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
+    return made
+
+
 def _crossing(ring: FloatArray) -> tuple[int, int] | None:
     """Two sides of a ring that meet though they are not neighbours, or None."""
     count = len(ring)
-    if count > 3000:
-        raise InputError(f"a polygon has {count} corners; at most 3000 are taken")
+    if count > MOST_CORNERS:
+        raise InputError(f"a polygon has {count} corners; at most {MOST_CORNERS} are taken")
     sides, _ = _sides(ring, ring)
     after = np.roll(sides, -1, axis=1)
     apart = sides * after < 0

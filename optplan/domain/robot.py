@@ -226,7 +226,6 @@ class Boom(_AnyCurve):
     reach : of the arm, m: what it works from one stop is within a sphere of this radius
     dwell : working time of a stop, s
     standoff : of the arm's foot from the wall, m, less than the reach
-    flow : water while it works, l/s
     """
 
     speeds: tuple[float, float, float]
@@ -234,7 +233,6 @@ class Boom(_AnyCurve):
     reach: float
     dwell: float
     standoff: float = 0.0
-    flow: float = 0.0
 
     def __post_init__(self) -> None:
         _positive(self, "acceleration", "reach")
@@ -244,8 +242,6 @@ class Boom(_AnyCurve):
             raise InputError(f"dwell is {self.dwell} s; expected 0 or more")
         if not 0 <= self.standoff < self.reach:
             raise InputError(f"standoff is {self.standoff} m; expected 0 or more, less than the reach {self.reach} m")
-        if not (math.isfinite(self.flow) and self.flow >= 0):
-            raise InputError(f"flow is {self.flow} l/s; expected 0 or more")
 
     @property
     def radius(self) -> float:

@@ -92,7 +92,7 @@ def points_text(plan: Plan, spacing: float = SPACING) -> str:
 
     Raises
     ------
-    InputError : the plan has no path yet, pieces of it are driven backwards, or the spacing is not above 0
+    InputError : the plan has no path yet, leaves the plane or is driven backwards, or the spacing is not above 0
     """
     return format_points(tool_points(plan, spacing))
 
@@ -104,6 +104,8 @@ def tool_points(plan: Plan, spacing: float = SPACING) -> ToolPoints:
     assert path is not None  # _states has made sure
     if (path.gear < 0).any():
         raise InputError("the plan has pieces that are driven backwards, which bare points cannot say; expected csv")
+    if (path.elevation != 0).any() or (path.start[:, 2] != 0).any():
+        raise InputError("the plan leaves the plane, which bare points cannot say; expected csv, or stops for a facade")
     stop = path.is_stop[states.piece]
     stop[-1] = False
     canvas = None if plan.cover is None else plan.cover.canvas

@@ -11,6 +11,7 @@ import numpy as np
 from optplan.domain.errors import InputError
 from optplan.domain.path import RAISED
 from optplan.domain.result import Plan
+from optplan.timing.sampling import begins
 
 COLUMNS = ("order", "begin", "end", "what", "stroke", "element", "metres", "direction", "tool")
 
@@ -39,8 +40,8 @@ def schedule_of(plan: Plan) -> list[Entry]:
     made: list[Entry] = []
     ends = [*edges[1:].tolist(), len(path)]
     visit = 0
+    times = begins(trajectory)
     for first, end in zip(edges.tolist(), ends, strict=True):
-        times = np.interp(path.offsets[[first, end]], trajectory.s, trajectory.t)
         stroke = int(path.stroke[first])
         reverse = False
         if stroke >= 0 and plan.visits is not None and visit < len(plan.visits):
@@ -49,7 +50,7 @@ def schedule_of(plan: Plan) -> list[Entry]:
         down = path.tool[first:end][path.tool[first:end] != RAISED]
         tool = int(down[0]) if len(down) else RAISED
         metres = float(path.length[first:end].sum())
-        made.append(Entry(float(times[0]), float(times[1]), stroke, metres, reverse, tool))
+        made.append(Entry(float(times[first]), float(times[end]), stroke, metres, reverse, tool))
     return made
 
 
@@ -66,11 +67,11 @@ def schedule_text(plan: Plan) -> str:
                 order,
                 f"{entry.begin:.3f}",
                 f"{entry.end:.3f}",
-                "mark" if known else "transit",
+                "transit" if not known else "stop" if strokes[entry.stroke].is_stop else "mark",
                 strokes[entry.stroke].id if known else "",
                 strokes[entry.stroke].element if known else "",
                 f"{entry.metres:.3f}",
-                ("backwards" if entry.reverse else "forwards") if known else "",
+                ("backwards" if entry.reverse else "forwards") if known and not strokes[entry.stroke].is_stop else "",
                 plan.robot.tool.settings[entry.tool].name,
             ]
         )

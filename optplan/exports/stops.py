@@ -34,6 +34,7 @@ def stop_rows(plan: Plan) -> list[dict[str, Any]]:
     if cover is None or path is None or plan.trajectory is None:
         raise InputError("the plan has no speeds yet; run the stage time first")
     walls = {wall.name: wall for wall in job.walls}
+    flow = 0.0 if plan.robot.supplies is None else 1000 * plan.robot.supplies.flow
     rows = np.flatnonzero(path.stroke >= 0)
     knots, made, moved = 0, [], 0.0
     s, t = plan.trajectory.s, plan.trajectory.t
@@ -50,9 +51,9 @@ def stop_rows(plan: Plan) -> list[dict[str, Any]]:
         place = unrolled(wall, foot, normal, robot.standoff)[0]
         values = (
             *(number, stroke.id, wall.name, *place.tolist(), *foot[0].tolist(), *normal[0].tolist()),
-            *(robot.standoff, cover.radii[stop] if cover.radii else job.radius, at - moved),
+            *(robot.standoff, cover.radii[stop] if cover.radii else job.radius or robot.radius, at - moved),
             *(float(t[knots]), float(t[knots]) + float(path.dwell[row]), float(path.dwell[row])),
-            float(path.dwell[row]) * robot.flow,
+            float(path.dwell[row]) * flow,
         )
         moved = at
         made.append(dict(zip(COLUMNS, values, strict=True)))

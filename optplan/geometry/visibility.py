@@ -23,22 +23,22 @@ class Ways:
     Parameters
     ----------
     obstacle : shapely area; ways may run along its border
+    most : corners; None where only `seen` is asked for, which any number does
 
     Raises
     ------
     LimitError : more than MOST_CORNERS corners
     """
 
-    def __init__(self, obstacle: Any) -> None:
+    def __init__(self, obstacle: Any, most: int | None = MOST_CORNERS) -> None:
         import shapely
 
         size = max(float(np.abs(obstacle.bounds).max()), 1.0) if not obstacle.is_empty else 1.0
         self.inner = obstacle.buffer(-HAIR * size, join_style="mitre")
         shapely.prepare(self.inner)
-        corners = shapely.get_coordinates(obstacle)
-        if len(corners) > MOST_CORNERS:
-            raise LimitError(f"areas to go around have {len(corners)} corners; at most {MOST_CORNERS}: simplify them")
-        corners = np.unique(corners, axis=0).reshape(-1, 2)
+        corners = np.unique(shapely.get_coordinates(obstacle), axis=0).reshape(-1, 2)
+        if most is not None and len(corners) > most:
+            raise LimitError(f"areas to go around have {len(corners)} corners; at most {most}: simplify them")
         self.corners = corners[~self._inside(corners)] if len(corners) else corners
 
     def _inside(self, points: FloatArray) -> BoolArray:

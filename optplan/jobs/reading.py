@@ -61,7 +61,8 @@ def read(
 
 def _facade(source: str | bytes | os.PathLike[str], close_gap: float | None, unit: float | None) -> Job:
     """A facade from a drawing or from measured points."""
-    from optplan.jobs.facades import facade_of_drawing, read_dxf
+    from optplan.jobs.dxf import read_dxf
+    from optplan.jobs.facades import facade_of_drawing
     from optplan.jobs.measured import read_measured
     from optplan.jobs.svg import read_svg
 
@@ -71,7 +72,7 @@ def _facade(source: str | bytes | os.PathLike[str], close_gap: float | None, uni
         case ".svg" | ".svgz":
             drawing = read_svg(source if text else Path(source), close_gap=close_gap)  # type: ignore[arg-type]
             with located("the drawing" if text else str(source)):
-                return facade_of_drawing(drawing, 1.0 if unit is None else unit)
+                return facade_of_drawing(drawing, unit)
         case ".dxf":
             return read_dxf(Path(source), unit)  # type: ignore[arg-type]
         case ".csv":

@@ -17,11 +17,11 @@ from optplan.domain.path import Path, Trajectory
 from optplan.domain.report import Check, Report, Verdict
 from optplan.domain.result import Cover, Plan
 from optplan.domain.robot import Boom
-from optplan.judge import _continuity, _motion, _ordering, _strokes, _water
+from optplan.judge import _continuity, _motion, _ordering, _strokes, _supplies, _water
 from optplan.judge._findings import GAP, RELATIVE, finite, held, noted, place_of, unchecked
 from optplan.judge._integrate import Samples, integrate
 from optplan.judge._speeds import speeds
-from optplan.judge._walls import OnWall, farthest, on_walls, washable
+from optplan.judge._walls import OnWall, farthest, on_walls, radii_of, washable
 from optplan.judge._washed import bare_spots, missed_area
 
 SHARP = math.radians(45)
@@ -52,24 +52,32 @@ def verify_facade(plan: Plan, job: Facade) -> Report:
         why = "the robot is no boom lift" if cover is not None and cover.strokes else "the plan has no stops"
         return Report((*checks, *unchecked(["strokes", "coverage", "reach", "order"], why)), ())
     boom, placed = robot.mobility, on_walls(job, cover)
+    radii = radii_of(job, cover, placed, boom.reach)
     done, deviation, _, _ = _strokes.strokes(path, samples, cover, GAP)
-    checks += [done, deviation, _water.order(job, path, cover, placed, options)]
+    checks += [done, deviation, _water.order(job, path, cover, placed, radii, options), _dwell(path, cover, boom)]
     if plan.visits is None:
         checks += unchecked(["visits"], "the plan does not say in which order stops were chosen")
     else:
         checks.append(_strokes.visits(path, samples, plan.visits))
-    checks += [_strokes.tool(path, robot), _pose(cover, placed, boom), _reach(job, cover, placed, boom)]
-    coverage, areas = _coverage(job, cover, placed, options)
+    checks += [_strokes.tool(path, robot), _pose(cover, placed, boom), _ground(job, cover)]
+    checks.append(_reach(job, cover, placed, radii, boom))
+    coverage, areas = _coverage(job, placed, radii, options)
     moves = _moves(path, samples, cover)
     checks += [coverage, _no_go(job, path, samples, placed, options), _walls(job, path, samples)]
-    figures += _figures(path, moves, boom) + areas
+    figures += _figures(path, moves) + areas
     if plan.trajectory is None:
-        checks += unchecked(["time", "rest", "axis speed", "axis acceleration"], "the plan has no speeds")
+        names = ["time", "rest", "axis speed", "axis acceleration", _supplies.NAME]
+        checks += unchecked(names, "the plan has no speeds")
     else:
         profile = speeds(path, plan.trajectory)
         checks += [_motion._time(path, plan.trajectory, profile, robot), _motion._rest(plan.trajectory)]
         checks += _axes(path, plan.trajectory, moves, job, cover, boom, options)
-        figures += _motion.durations(path, plan.trajectory, profile)[:3]
+        taken = _motion.durations(path, plan.trajectory, profile)[:3]
+        known = {name: value for name, value, _ in areas}
+        washed = known["wall area"] * (1 + known["overlap"])
+        used, amounts = _supplies.supplies(robot, washed, taken[1][1], taken[0][1])
+        checks.append(used)
+        figures += [*taken, *amounts]
     if plan.ordering is None:
         checks += unchecked(["bound", "cost"], "the plan does not say how it was ordered")
     else:
@@ -93,24 +101,56 @@ def _pose(cover: Cover, placed: list[OnWall], boom: Boom) -> Check:
     return held("stand-off", value, 0.0, "m", None, detail, slack=GAP)
 
 
-def _reach(job: Facade, cover: Cover, placed: list[OnWall], boom: Boom) -> Check:
+def _ground(job: Facade, cover: Cover) -> Check:
+    """How far the lowest stop is below the ground, m; stops that the job gives are where they are."""
+    feet = [float((wall.origin[2] + wall.outline @ np.array([wall.across[2], wall.up[2]])).min()) for wall in job.walls]
+    ground = min(feet) if job.ground is None else job.ground
+    given = {wall.name for wall in job.walls if wall.stops is not None or wall.up[2] <= 0}
+    deep = [ground - float(stroke.points[0, 2]) for stroke in cover.strokes if stroke.points.shape[1] == 3]
+    worst = int(np.argmax(deep)) if deep else -1
+    value = max(deep[worst], 0.0) if deep else 0.0
+    if value <= GAP:
+        return held("ground", value, 0.0, "m", detail="No stop is below the ground.", slack=GAP)
+    stop = cover.strokes[worst]
+    detail = f"Stop {stop.id} is {value:.3g} m below the ground"
+    if all(s.element in given for s, d in zip(cover.strokes, deep, strict=True) if d > GAP):
+        return noted("ground", value, "m", f"{detail}, as the job gives it.")
+    return held("ground", value, 0.0, "m", place_of(stop.points[0]), f"{detail}.", slack=GAP)
+
+
+def _dwell(path: Path, cover: Cover, boom: Boom) -> Check:
+    """By how much a stop is too short to wash, s: each takes the robot's time, or its stroke's when that is longer."""
+    rows = np.flatnonzero((path.stroke >= 0) & (path.stroke < len(cover.strokes)))
+    asked = np.array([max(cover.strokes[k].dwell, boom.dwell) for k in path.stroke[rows].tolist()])
+    owner, spent = path.stroke[rows], np.bincount(path.stroke[rows], path.dwell[rows], len(cover.strokes))
+    short = asked - spent[owner] if len(rows) else np.zeros(1)
+    worst = int(np.argmax(short))
+    value = max(float(short[worst]), 0.0)
+    if value <= RELATIVE * boom.dwell:
+        return held("dwell", 0.0, 0.0, "s", detail=f"Every stop takes the {boom.dwell:g} s that washing takes.")
+    name, had = cover.strokes[int(owner[worst])].id, spent[owner[worst]]
+    detail = f"Stop {name} takes {had:g} s; washing takes {asked[worst]:g} s."
+    return held("dwell", value, 0.0, "s", place_of(path.start[int(rows[worst])]), detail)
+
+
+def _reach(job: Facade, cover: Cover, placed: list[OnWall], radii: FloatArray, boom: Boom) -> Check:
     """Greatest distance from a stop to what it has to wash, m."""
-    if not cover.radii:
-        return noted("reach", 0.0, "m", "Not checked: the plan does not say how large the circles are.")
     far = [
-        farthest(job.walls[p.wall], p, r) if p.wall >= 0 else math.inf for p, r in zip(placed, cover.radii, strict=True)
+        farthest(job.walls[p.wall], p, r) if p.wall >= 0 else math.inf
+        for p, r in zip(placed, radii.tolist(), strict=True)
     ]
     worst = int(np.argmax(far))
     detail = f"Stop {cover.strokes[worst].id} has to reach farthest."
+    if not cover.radii:
+        detail = "The plan does not say how large its circles are: they are taken as large as the arm reaches."
     return held("reach", finite(far[worst]), boom.reach, "m", None, detail, slack=RELATIVE * boom.reach)
 
 
-def _coverage(job: Facade, cover: Cover, placed: list[OnWall], options: Options) -> tuple[Check, Figures]:
+def _coverage(job: Facade, placed: list[OnWall], radii: FloatArray, options: Options) -> tuple[Check, Figures]:
     """m2 of wall that no circle washes when every stop is off by the tolerance, in the worst direction."""
     import shapely
 
     missed, total, worked, beside, spot, name = 0.0, 0.0, 0.0, 0.0, None, ""
-    radii = np.array(cover.radii or [job.radius or 1.0] * len(cover.strokes))
     for number, wall in enumerate(job.walls):
         own = [k for k, stop in enumerate(placed) if stop.wall == number]
         centres = np.array([[placed[k].x, placed[k].y] for k in own]).reshape(-1, 2)
@@ -294,8 +334,8 @@ def _walls(job: Facade, path: Path, samples: Samples) -> Check:
     return held("walls", through, 0, "", spot, detail)
 
 
-def _figures(path: Path, moves: Moves, boom: Boom) -> Figures:
-    """Counts, lengths, water, and how natural the order looks: turns, and changes between left and right."""
+def _figures(path: Path, moves: Moves) -> Figures:
+    """Counts, lengths, and how natural the order looks: turns, and changes between left and right."""
     length = np.linalg.norm(moves.step, axis=1)
     unit = moves.step / np.maximum(length, 1e-300)[:, None]
     bend = np.arccos(np.clip((unit[1:] * unit[:-1]).sum(axis=1), -1, 1)) if len(unit) > 1 else np.zeros(0)
@@ -308,5 +348,4 @@ def _figures(path: Path, moves: Moves, boom: Boom) -> Figures:
         ("moves", float(length.sum()), "m"),
         ("turns", float((bend > SHARP).sum()), ""),
         ("direction changes", float((np.diff(side) != 0).sum()), ""),
-        ("water", float(path.dwell.sum()) * boom.flow, "l"),
     ]

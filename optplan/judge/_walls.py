@@ -93,6 +93,27 @@ def farthest(wall: Wall, stop: OnWall, radius: float) -> float:
     return math.sqrt(worst + radius**2)
 
 
+def radii_of(job: Facade, cover: Cover, placed: list[OnWall], reach: float) -> FloatArray:
+    """(n,) m, of the circles of stops: as the plan says, or else what the arm reaches there, and the job asks for."""
+    if cover.radii:
+        return np.array(cover.radii)
+    most = math.inf if job.radius is None else job.radius
+    return np.array([min(_reached(job.walls[p.wall], p, reach), most) if p.wall >= 0 else 0.0 for p in placed])
+
+
+def _reached(wall: Wall, stop: OnWall, reach: float) -> float:
+    """Greatest radius (m) of a circle around a stop's place that is within reach of its foot."""
+    if not abs(stop.standoff) < reach:
+        return 0.0
+    low, high = 0.0, math.sqrt(reach**2 - stop.standoff**2)
+    if farthest(wall, stop, high) <= reach * (1 + 1e-12):
+        return high
+    for _ in range(50):
+        middle = (low + high) / 2
+        low, high = (middle, high) if farthest(wall, stop, middle) <= reach else (low, middle)
+    return low
+
+
 def washable(wall: Wall) -> Any:
     """What is to be washed of a wall (shapely)."""
     import shapely

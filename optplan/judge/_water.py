@@ -20,9 +20,9 @@ LEVEL = 0.25
 """Rows are apart by at least this share of the radius."""
 
 
-def order(job: Facade, path: Path, cover: Cover, placed: list[OnWall], options: Options) -> Check:
+def order(job: Facade, path: Path, cover: Cover, placed: list[OnWall], radii: FloatArray, options: Options) -> Check:
     """How many pairs of stops are visited against the rule; the first one, in the order of visiting, by name."""
-    pairs = [_rule(job, number, placed, cover, options) for number in range(len(job.walls))]
+    pairs = [_rule(job, number, placed, radii, options) for number in range(len(job.walls))]
     before = np.concatenate([np.array(cover.precedence, dtype=np.int64).reshape(-1, 2), *pairs])
     before = np.unique(before, axis=0).reshape(-1, 2)
     position = np.full(len(cover.strokes), -1)
@@ -40,7 +40,7 @@ def order(job: Facade, path: Path, cover: Cover, placed: list[OnWall], options: 
     return held("order", len(broken), 0, "", place_of(np.array([placed[then].x, placed[then].y])), detail)
 
 
-def _rule(job: Facade, number: int, placed: list[OnWall], cover: Cover, options: Options) -> IntArray:
+def _rule(job: Facade, number: int, placed: list[OnWall], radii: FloatArray, options: Options) -> IntArray:
     """Pairs (k, 2) of the stops of one wall."""
     wash = options.wash
     own = np.array([k for k, stop in enumerate(placed) if stop.wall == number], dtype=np.int64)
@@ -48,7 +48,7 @@ def _rule(job: Facade, number: int, placed: list[OnWall], cover: Cover, options:
         return np.zeros((0, 2), dtype=np.int64)
     x = np.array([placed[k].x for k in own.tolist()])
     y = np.array([placed[k].y for k in own.tolist()]) * (1.0 if wash.direction == "up" else -1.0)
-    radius = np.array([cover.radii[k] for k in own.tolist()]) if cover.radii else np.full(len(own), job.radius or 1.0)
+    radius = radii[own]
     if wash.rule == "rows":
         levels: FloatArray = np.sort(y)
         starts = levels[np.append(True, np.diff(levels) > LEVEL * radius.min() + CLEARLY)]

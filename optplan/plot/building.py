@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,12 +16,17 @@ from optplan.plot.facade import GLASS, MOVE, TEXT, WALL, WATER, shown
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+MOST_TICKS = 10
+"""Of the longest axis."""
+WIDE, HIGH, EDGE, HEAD = 8.0, 8.0, 0.85, 0.0
+"""Inches: the most that the drawing takes, and what is kept free around it for figures, and above it for a title."""
 ROUND = np.linspace(0, 2 * np.pi, 49)
 
 
 def building_figure(plan: Plan, job: Facade) -> Figure:
     """A matplotlib figure in three dimensions. Raises InputError when there are no stops yet."""
     from matplotlib.figure import Figure
+    from matplotlib.ticker import MultipleLocator
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
     seen = shown(plan, job)
@@ -41,6 +46,7 @@ def building_figure(plan: Plan, job: Facade) -> Figure:
             places(wall, seen.places[i] + seen.radii[i] * np.column_stack([np.cos(ROUND), np.sin(ROUND)])) for i in own
         ]
         axes.add_collection3d(Line3DCollection(rings, colors=WATER, lw=0.5, alpha=0.6, zorder=3))
+        corners += rings
     if plan.path is not None:
         line = np.concatenate([plan.path.start, ends(plan.path).position[-1:]])
         axes.plot(*line.T, color=MOVE, lw=1.2, zorder=5)
@@ -57,13 +63,41 @@ def building_figure(plan: Plan, job: Facade) -> Figure:
         zlim=(middle[2] - room[2] / 2, middle[2] + room[2] / 2),
     )
     axes.set_box_aspect(room.tolist())
+    step = _step(float(room.max()) / MOST_TICKS)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MultipleLocator(step))
     axes.set_xlabel("x, m", fontsize=8)
     axes.set_ylabel("y, m", fontsize=8)
     axes.set_zlabel("z, m", fontsize=8)
     axes.tick_params(labelsize=7)
     axes.view_init(elev=22, azim=_azimuth(job))
+    _fill(made, axes)
     made.suptitle(f"{job.name}  ·  {plan.robot.name}", fontsize=12, weight="bold", color=TEXT)
     return made
+
+
+def _step(least: float) -> float:
+    """The next of 1, 2, 5, 10 ... that is no less: one step for all axes, of which a short one has few."""
+    power = 10.0 ** np.floor(np.log10(least))
+    return float(next(power * k for k in (1, 2, 5, 10) if power * k >= least * (1 - 1e-9)))
+
+
+def _fill(made: Figure, axes: Any) -> None:
+    """Make the figure as large as what is drawn in it, which a view in three dimensions leaves half empty."""
+    from mpl_toolkits.mplot3d import proj3d
+
+    axes.set_position((0.0, 0.0, 1.0, 1.0))
+    made.draw_without_rendering()
+    size = np.array(made.get_size_inches())
+    corners = np.array(np.meshgrid(axes.get_xlim(), axes.get_ylim(), axes.get_zlim())).reshape(3, -1)
+    x, y, _ = proj3d.proj_transform(*corners, axes.get_proj())
+    seen = axes.transData.transform(np.column_stack([x, y])) / made.dpi
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    scale = min(WIDE / (high - low)[0], HIGH / (high - low)[1])
+    inches = scale * (high - low) + np.array([2 * EDGE, 2 * EDGE + HEAD])
+    made.set_size_inches(*inches.tolist())
+    corner = EDGE - scale * low
+    axes.set_position((*(corner / inches).tolist(), *(scale * size / inches).tolist()))
 
 
 def _azimuth(job: Facade) -> float:

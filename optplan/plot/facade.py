@@ -58,7 +58,8 @@ def shown(plan: Plan, job: Facade) -> Shown:
         feet = np.array([cover.strokes[i].points[0] for i in own]).reshape(-1, 3)
         facing = np.array([_normal(cover, i) for i in own.tolist()]).reshape(-1, 3)
         places[own] = unrolled(one, feet, facing, away)
-    radii = np.array(cover.radii or [job.radius or 1.0] * len(wall))
+    reached = plan.robot.mobility.radius if isinstance(plan.robot.mobility, Boom) else 1.0
+    radii = np.array(cover.radii or [job.radius or reached] * len(wall))
     order = np.zeros(0, dtype=np.int64)
     if plan.path is not None:
         order = plan.path.stroke[plan.path.stroke >= 0]
@@ -193,7 +194,7 @@ def _standoff(plan: Plan) -> float:
 
 
 def _facts(plan: Plan, seen: Shown) -> list[str]:
-    facts = [f"{len(seen.wall)} stops"]
+    facts = ["1 stop" if len(seen.wall) == 1 else f"{len(seen.wall)} stops"]
     if plan.path is not None:
         facts.append(f"{_between(plan.path):.1f} m between them")
     if plan.trajectory is not None:

@@ -24,7 +24,7 @@ LINE = 2
 
 
 class FacadeStage(Stage):
-    """Draws the outlines of walls and no-go areas on top of what is washed."""
+    """Draws the outlines of walls and no-go areas, and the way so far, on top of what is washed."""
 
     def __init__(self, motion: Motion, robot: Robot, ground: Ground, title: str, rings: list[FloatArray]) -> None:
         self._rings = [[(float(x), float(y)) for x, y in ground.pixels(ring)] for ring in rings]
@@ -34,6 +34,9 @@ class FacadeStage(Stage):
         super()._mark(begin, end, width, colour)
         for ring in self._rings:
             self._pen.line([*ring, ring[0]], fill=self.colours.text, width=LINE)
+        if colour != self.colours.hint and end > 0:
+            way = [(float(x), float(y)) for x, y in self._track[: end + 1]]
+            self._pen.line(way, fill=self.colours.travel, width=LINE)
 
 
 def facade_stage(plan: Plan, job: Facade, times: FloatArray, longer: int, title: str) -> FacadeStage:

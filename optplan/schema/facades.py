@@ -45,6 +45,7 @@ class FacadeModel(Model):
     tau: float = 0.75
     width: float = 2.0
     building: list[Place] | None = Entry(None, description="ground plan; default: the walls' own, joined in order")
+    ground: Length | None = Entry(None, description="height below which no stop is; default: the walls' lowest corner")
     notes: list[NoteModel] = Entry(default_factory=list)
 
 
@@ -60,7 +61,14 @@ def facade_from(model: FacadeModel) -> Facade:
     else:
         walls = tuple(map(_wall_from, model.walls or []))
     return Facade(
-        model.name, walls, model.radius, model.tau, model.width, _maybe(model.building), notes_from(model.notes)
+        model.name,
+        walls,
+        model.radius,
+        model.tau,
+        model.width,
+        _maybe(model.building),
+        notes_from(model.notes),
+        model.ground,
     )
 
 
@@ -100,6 +108,7 @@ def facade_model(job: Facade) -> FacadeModel:
             "tau": job.tau,
             "width": job.width,
             "building": None if job.building is None else job.building.tolist(),
+            "ground": job.ground,
             "notes": note_models(job.notes),
         }
     )

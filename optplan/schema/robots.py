@@ -86,7 +86,7 @@ class BoomModel(Model):
     reach: Length = Field(description="of the arm, from its foot")
     dwell: Duration
     standoff: Length = Field(0.0, description="of the arm's foot from the wall")
-    flow: float = Field(0.0, ge=0, description="water while it works, l/s")
+    flow: float | None = Field(None, ge=0, description="older place of the flow of `supplies`: water, l/s")
 
 
 class ArmModel(Model):
@@ -139,13 +139,18 @@ def robot_from(model: RobotModel) -> Robot:
     with located("tool"):
         tool = _tool_from(model.tool)
     with located("mobility"):
-        parts = model.mobility.model_dump(exclude={"kind"}, exclude_none=True)
+        parts = model.mobility.model_dump(exclude={"kind", "flow"}, exclude_none=True)
         kinds = {"diff-drive": DiffDrive, "gantry": Gantry, "boom": Boom, "arm": Arm}
         mobility = kinds[model.mobility.kind](**parts)
     with located("canvas"):
         canvas = None if model.canvas is None else Canvas(**model.canvas.model_dump())
     with located("supplies"):
         supplies = None if model.supplies is None else Supplies(**model.supplies.model_dump(exclude_none=True))
+        older = model.mobility.flow if isinstance(model.mobility, BoomModel) else None
+        if older and supplies is not None:
+            raise InputError("the flow is here and in mobility; expected it here alone")
+        if older:
+            supplies = Supplies("water", flow=older / 1000)
     return Robot(model.name, model.summary, tool, mobility, canvas, tuple(model.sources.items()), supplies)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from optplan.domain.arrays import FloatArray, IntArray
 from optplan.domain.path import RAISED, Trajectory
 from optplan.domain.robot import Tool
-from optplan.timing.sampling import moments
+from optplan.timing.sampling import begins
 
 
 class Commands(NamedTuple):
@@ -37,11 +37,11 @@ def tool_commands(trajectory: Trajectory, tool: Tool) -> Commands:
         return Commands(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64), np.zeros(0))
     before = np.concatenate([[RAISED], path.tool[:-1]])
     rows = np.flatnonzero(path.tool != before)
-    setting, at = path.tool[rows], path.offsets[rows]
     if path.tool[-1] != RAISED:
-        setting, at = np.append(setting, RAISED), np.append(at, path.offsets[-1])
-    # a tool goes down after a turn on the spot and up before one
-    wanted, _ = moments(trajectory, at, setting == RAISED)
+        rows = np.append(rows, len(path))
+    setting, at = np.append(path.tool, RAISED)[rows], path.offsets[rows]
+    # a tool goes down after a turn on the spot and up before one; at a stop it works while the robot stands
+    wanted = begins(trajectory)[rows]
     told = wanted - np.where(setting == RAISED, tool.off_delay, tool.on_delay)
     # none may be overtaken by the next one
     told = np.minimum.accumulate(told[::-1])[::-1]

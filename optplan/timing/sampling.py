@@ -8,6 +8,30 @@ from optplan.domain.arrays import BoolArray, FloatArray
 from optplan.domain.path import Trajectory
 
 
+def begins(trajectory: Trajectory) -> FloatArray:
+    """(n + 1,) s, when every piece of the path begins, and when the last one ends.
+
+    Stops that follow each other at one place share the time spent there: each has its dwell, and of what is left a part
+    as large as its turn.
+    """
+    path, count = trajectory.path, len(trajectory.path)
+    if count == 0:
+        return trajectory.t[-1:].copy()
+    come, _ = moments(trajectory, path.offsets, np.ones(count + 1, dtype=np.bool_))
+    gone, _ = moments(trajectory, path.offsets, np.zeros(count + 1, dtype=np.bool_))
+    stop = path.is_stop
+    found = np.append(np.where(stop, come[:-1], gone[:-1]), trajectory.t[-1])
+    several = stop[:-1] & stop[1:] & ~np.append(False, stop[:-2])
+    for first in np.flatnonzero(several).tolist():
+        moving = np.flatnonzero(~stop[first:])
+        rows = np.arange(first, first + moving[0] if len(moving) else count)
+        turn = np.abs(path.turn[rows])
+        rest = max(float(gone[first] - come[first] - path.dwell[rows].sum()), 0.0)
+        taken = path.dwell[rows] + (rest * turn / turn.sum() if turn.any() else 0.0)
+        found[rows[1:]] = np.minimum(come[first] + np.cumsum(taken)[:-1], gone[first])
+    return found
+
+
 def moments(trajectory: Trajectory, s: FloatArray, arriving: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Time (k,) s and speed (k,) m/s at arc lengths s (k,) m.
 

@@ -14,8 +14,9 @@ from scipy.sparse import csr_array
 
 from optplan.coverage.circles import MAX_STOPS, fewest_circles, fewest_members, without_redundant
 from optplan.coverage.patterns import CELLS, PATTERNS, lay, placements, plain, stretched
+from optplan.coverage.room import Room
 from optplan.domain.arrays import FloatArray
-from optplan.domain.errors import LimitError
+from optplan.domain.errors import InputError, LimitError
 from optplan.domain.washing import WashOptions
 from optplan.geometry.arrangements import faces_of, holders, without_supersets
 from optplan.judge._washed import bare_spots, missed_area
@@ -187,3 +188,30 @@ def test_the_judge_sees_islands() -> None:
 def test_holders() -> None:
     member = holders(np.array([[0.0, 0.0], [5, 5]]), np.array([[0.5, 0], [9, 9]]), 1.0)
     assert member.toarray().tolist() == [[1, 0], [0, 0]]
+
+
+def test_centres_keep_to_their_room() -> None:
+    """Above the ground, and left of an inner corner: the last 0.7 m are washed from its border."""
+    room = Room(((-math.inf, 6.6),), 0.0)
+    area = shapely.box(0, 0, 7.3, 4)
+    for fewest in ("pattern", "minimal", "exact"):
+        found = fewest_circles(area, 1.0, WashOptions(fewest=fewest, effort=2.0), room)
+        assert washed(area, found.centres, 1.0)
+        assert found.centres[:, 0].max() <= 6.6
+        assert found.centres[:, 1].min() >= 0
+    split = Room(((-1.0, 2.0), (3.2, 9.0)), 0.5)
+    found = fewest_circles(area, 1.0, WashOptions(fewest="minimal"), split)
+    assert washed(area, found.centres, 1.0)
+    assert not ((found.centres[:, 0] > 2) & (found.centres[:, 0] < 3.2)).any()
+    assert found.centres[:, 1].min() >= 0.5
+
+
+def test_what_is_out_of_reach_is_said() -> None:
+    with pytest.raises(InputError, match=r"out of reach at \(7.3.*inner corner"):
+        fewest_circles(shapely.box(0, 0, 7.3, 4), 1.0, WashOptions(fewest="minimal"), Room(((-1.0, 6.2),)))
+
+
+def test_one_circle_is_enough_for_a_small_wall() -> None:
+    found = fewest_circles(shapely.box(0, 0, 0.5, 0.8), 1.0, WashOptions(fewest="pattern"), Room(low=0.2))
+    assert len(found.centres) == found.bound == 1
+    assert found.centres[0, 1] >= 0.2

@@ -225,7 +225,6 @@ BROKEN: list[Callable[[], object]] = [
     lambda: Boom((1, 1, 0), 1, 1, 1),
     lambda: Boom((1, 1, 1), 1, 1, -1),
     lambda: Boom((1, 1, 1), 1, 1, 1, standoff=1),
-    lambda: Boom((1, 1, 1), 1, 1, 1, flow=-1),
     lambda: Arm(1, 1, 1, 0),
     lambda: Canvas(1, 2, 0.5),
     lambda: Canvas(1, math.inf),

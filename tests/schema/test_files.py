@@ -83,7 +83,7 @@ MOBILITIES: tuple[Mobility, ...] = (
     CAR.mobility,
     PLOTTER.mobility,
     DiffDrive(0.5, 0.1, 20.0, 40.0, 1 / 3, 1.0, True, 0.7, 0.3, 4.4),
-    Boom((0.1, 0.2, 1 / 3), 0.3, 1.1, 20.0, 1 / 3, 0.1),
+    Boom((0.1, 0.2, 1 / 3), 0.3, 1.1, 20.0, 1 / 3),
     Arm(0.1, 0.2, 1 / 3, 1.5),
 )
 

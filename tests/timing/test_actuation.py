@@ -16,6 +16,7 @@ from optplan.domain.result import Plan
 from optplan.exports.tool import tool_text
 from optplan.timing.actuation import tool_commands
 from optplan.timing.fastest import profile
+from optplan.timing.sampling import begins
 from tests.strategies import PLOTTER, TOOL
 
 
@@ -70,6 +71,28 @@ def test_marks_at_the_beginning_are_told_before_it() -> None:
     commands = tool_commands(made, replace(TOOL, on_delay=0.3))
     assert commands.time[0] == pytest.approx(-0.3)
     assert commands.s[0] == 0
+
+
+def test_what_works_at_a_stop_is_on_while_the_robot_stands() -> None:
+    """A turn on the spot, five seconds of work, another turn: in their order, and the turns take what is left."""
+    zero = np.zeros(5)
+    path = Path(
+        np.array([[0.0, 0, 0], [2, 0, 0], [2, 0, 0], [2, 0, 0], [2, 0, 0]]),
+        zero, zero, zero, zero,
+        np.array([2.0, 0, 0, 0, 2]),
+        np.array([0, 1.0, 0, 3, 0]),
+        np.array([0, 0, 5.0, 0, 0]),
+        np.array([0, 0, 1, 0, 0]),
+        np.array([-1, -1, 0, -1, -1]),
+    )  # fmt: skip
+    made = Trajectory(
+        path, np.array([0, 1, 2.0, 2, 3, 4]), np.array([0, 2, 4.0, 13, 15, 17]), np.array([0, 1, 0, 0, 1, 0.0])
+    )
+    assert begins(made) == pytest.approx([0, 4, 5, 10, 13, 17])
+    commands = tool_commands(made, replace(TOOL, on_delay=0.5, off_delay=0.25))
+    assert commands.setting.tolist() == [1, 0]
+    assert commands.time == pytest.approx([4.5, 9.75])
+    assert commands.s == pytest.approx([2.0, 2.0])
 
 
 def test_a_plans_commands_are_written() -> None:
