@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from optplan.domain.progress import ProgressCallback
     from optplan.domain.result import Cover
     from optplan.domain.robot import Robot
+    from optplan.domain.stroke import Stroke
 
 
 def cover(job: Job, robot: Robot, options: Options | None = None, progress: ProgressCallback | None = None) -> Cover:
@@ -58,7 +59,12 @@ def _kept(made: Cover, robot: Robot, options: Options) -> Cover:
     strokes = made.strokes
     if keep == "all":
         strokes = tuple(
-            replace(stroke, directed=not stroke.is_stop and not refusals(stroke, robot, options)[0], headings=1)
+            replace(stroke, directed=_forwards(stroke) and not refusals(stroke, robot, options)[0], headings=1)
             for stroke in strokes
         )
     return replace(made, strokes=strokes, precedence=tuple((k, k + 1) for k in range(len(strokes) - 1)))
+
+
+def _forwards(stroke: Stroke) -> bool:
+    """Whether a stroke may be driven in the order of its points, as far as where it is entered goes."""
+    return not stroke.is_stop and (stroke.closed or stroke.entry in (None, 0))

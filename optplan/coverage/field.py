@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from optplan.coverage.clearing import with_free_ways
 from optplan.coverage.splitting import direction_notes, split_at_stops
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError, LimitError, located
@@ -78,6 +79,8 @@ def cover_field(job: Field, robot: Robot, options: Options, progress: ProgressCa
         _refuse_obstructed(strokes, job, options)
         strokes, _ = split_at_stops(strokes, robot, options)
         notes += direction_notes(strokes, robot, options)
+        strokes, lost = with_free_ways(strokes, robot, with_areas(job, robot, options))
+        notes += lost
         progress(Progress("cover", 1.0, message=f"{len(strokes)} strokes"))
         return Cover(tuple(strokes), start=job.start, notes=tuple(notes))
 

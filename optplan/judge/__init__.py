@@ -88,7 +88,7 @@ def verify(plan: Plan) -> Report:
     else:
         checks += [
             *_strokes.canvas(path, samples, marks, cover, page_tolerance(robot, options)),
-            _areas.areas(path, samples, cover, options),
+            _areas.areas(path, samples, cover, options, plan.job, robot),
         ]
         covered, areas = _coverage.coverage(carried, marks, cover, robot, limit, exact)
         wheels = _wheels.wheels_over_finished(path, samples, cover, robot, options, plan.trajectory)
