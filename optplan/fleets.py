@@ -113,7 +113,8 @@ def plan_fleet(
     plans = []
     for nodes in shares.paths:
         kept = sorted({int(ways.stroke[node]) for node in nodes})
-        part = replace(made, strokes=tuple(made.strokes[k] for k in kept))
+        others = tuple(stroke for k, stroke in enumerate(made.strokes) if k not in kept)
+        part = replace(made, strokes=tuple(made.strokes[k] for k in kept), elsewhere=others)
         visits = ways.take(nodes)
         own = replace(visits, stroke=np.array([kept.index(k) for k in visits.stroke.tolist()], dtype=np.int64))
         plans.append(plan_from(_ordered(job, machine, chosen, part, own, problem.cost_of(nodes)), "connect", tell))

@@ -63,6 +63,7 @@ def cover_field(job: Field, robot: Robot, options: Options, progress: ProgressCa
             for s in job.segments
             if s.actuation == "NONE"
         ]
+        notes += _width_notes(marked, job, robot)
         if not marked:
             raise InputError("nothing is to be marked; expected a segment whose actuation is not NONE")
         spots = [segment for segment in marked if segment.spot > 0]
@@ -176,6 +177,25 @@ def _wide(segment: FieldSegment, job: Field, robot: Robot) -> list[Chain]:
             name = segment.id + (f"|{side + 1}" if count > 1 else "") + (f"#{number + 1}" if segment.passes > 1 else "")
             made.append(Chain((primitive_of(segment, aside),), segment.closed, segment, name))
     return made
+
+
+def _width_notes(marked: list[FieldSegment], job: Field, robot: Robot) -> list[Note]:
+    """A notice for each width of lines that the tool marks wider."""
+    found: dict[tuple[float, float], list[str]] = {}
+    for segment in marked:
+        tool = robot.tool.settings[_setting(segment, robot)].width
+        width = segment.width or job.line_width or tool
+        if segment.spot == 0 and width < tool * (1 - 1e-9):
+            found.setdefault((width, tool), []).append(segment.id)
+    return [
+        Note(
+            "notice",
+            ids[0],
+            f"lines of {100 * width:.3g} cm are marked {100 * tool:.3g} cm wide by this tool",
+            len(ids),
+        )
+        for (width, tool), ids in found.items()
+    ]
 
 
 def _joined(chains: list[Chain]) -> list[Chain]:
