@@ -135,9 +135,13 @@ def print_table(
 
 def print_notes(plan: Plan) -> None:
     """The load report."""
-    notes = [*plan.job.notes, *(plan.cover.notes if plan.cover is not None else ())]
+    print_job_notes(plan.job.name, [*plan.job.notes, *(plan.cover.notes if plan.cover is not None else ())])
+
+
+def print_job_notes(name: str, notes: Sequence[Note]) -> None:
+    """What a job's reader, or more, has to say."""
     if notes:
-        print(f"{plan.job.name}: what was ignored, changed or is worth knowing")
+        print(f"{name}: what was ignored, changed or is worth knowing")
         print_table(("", "", ""), _note_rows(notes))
 
 

@@ -67,9 +67,8 @@ def cover_field(job: Field, robot: Robot, options: Options, progress: ProgressCa
         if not marked:
             raise InputError("nothing is to be marked; expected a segment whose actuation is not NONE")
         spots = [segment for segment in marked if segment.spot > 0]
+        _refuse_too_many(marked, job, robot)
         chains = [part for segment in marked if segment.spot == 0 for part in _wide(segment, job, robot)]
-        if len(chains) + len(spots) > MAX_STROKES:
-            raise LimitError(f"there are {len(chains) + len(spots)} lines; expected at most {MAX_STROKES}")
         progress(Progress("cover", 0.1, message=f"{len(marked)} segments"))
         chains = _joined(chains)
         pieces = _cut(chains) if options.cover.cut else chains
@@ -164,11 +163,29 @@ def _setting(segment: FieldSegment, robot: Robot) -> int:
     )
 
 
+def _side_by_side(segment: FieldSegment, job: Field, robot: Robot) -> float:
+    """Lines of the tool that make up the width of a segment: a whole number, kept a float as it may be huge."""
+    tool = robot.tool.settings[_setting(segment, robot)].width
+    width = segment.width or job.line_width or tool
+    return max(1.0, float(np.ceil(width / tool - 1e-6)))
+
+
+def _refuse_too_many(marked: list[FieldSegment], job: Field, robot: Robot) -> None:
+    """LimitError before any line is made, naming the segment that asks for most."""
+    counts = [s.passes * (1.0 if s.spot > 0 else _side_by_side(s, job, robot)) for s in marked]
+    if sum(counts) > MAX_STROKES:
+        worst = int(np.argmax(counts))
+        raise LimitError(
+            f"there are {sum(counts):.0f} lines, {counts[worst]:.0f} of them for segment {marked[worst].id!r}; "
+            f"expected at most {MAX_STROKES}"
+        )
+
+
 def _wide(segment: FieldSegment, job: Field, robot: Robot) -> list[Chain]:
     """A segment as often as it is marked: passes, and lines side by side where it is wider than the tool."""
     tool = robot.tool.settings[_setting(segment, robot)].width
     width = segment.width or job.line_width or tool
-    count = max(1, math.ceil(width / tool - 1e-6))
+    count = int(_side_by_side(segment, job, robot))
     spread = max(width - tool, 0.0)
     sides = [0.0] if count == 1 else [spread * (k / (count - 1) - 0.5) for k in range(count)]
     made = []

@@ -10,7 +10,7 @@ import pytest
 
 import optplan as op
 from optplan.domain.errors import InputError
-from optplan.domain.job import Field, FieldSegment
+from optplan.domain.job import Anchor, Field, FieldSegment
 from optplan.domain.options import ConnectOptions, CoverOptions, Options, OrderOptions
 from optplan.domain.robot import DiffDrive, Robot
 
@@ -139,6 +139,16 @@ def test_an_arc_no_way_fits_is_an_error_with_its_name() -> None:
         (lambda: line("a", (0, 0), (1, 0), width=-1.0), "'a'.*width"),
         (lambda: line("a", (0, math.nan), (1, 0)), "'a'"),
         (lambda: Field("x", (TEE[0], TEE[0])), "'long'"),
+        (lambda: Field("x", ()), "segments"),
+        (lambda: Field("x", "abc"), "segments"),  # type: ignore[arg-type]
+        (lambda: Field("x", ("abc",)), "segments"),  # type: ignore[arg-type]
+        (lambda: line("a", (0, 0), (1e29, 0)), "'a'.*1e\\+29.*1e\\+06"),
+        (lambda: line("a", (0, 0), (1, 0), width=1e8), "'a'.*width"),
+        (lambda: Field("x", TEE, start=(1e9, 0)), "start"),
+        (lambda: Field("x", TEE, keep_out=(array([[0, 0], [1e9, 0], [0, 1]]),)), "polygon"),
+        (lambda: Field("x", TEE, anchor=Anchor(88, 0, 0)), "no place"),
+        (lambda: Field("x", TEE, anchor=Anchor(50, 0, 1e300)), "no place"),
+        (lambda: op.cover(Field("x", (line("a", (0, 0), (60, 0), width=1e6),)), MARKER), "8333334 of them.*'a'"),
         (lambda: op.cover(Field("x", (line("a", (0, 0), (1, 0), actuation="NONE"),)), MARKER), "nothing"),
         (
             lambda: op.cover(Field("x", (line("a", (0, 0), (1, 0), actuation="PUMP"),)), op.load_robot("beach-rake")),

@@ -100,6 +100,19 @@ def test_a_logo_is_lines_and_arcs_close_to_the_drawing(tmp_path: Path) -> None:
         with_logo(made, svg, (0, 0), 0.0)
 
 
+def test_what_a_logo_leaves_out_is_told_once(tmp_path: Path) -> None:
+    svg = tmp_path / "logo.svg"
+    svg.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><text x="1" y="1">Hi</text>'
+        '<rect width="4" height="4" fill="none" stroke="black"/></svg>'
+    )
+    made = with_logo(with_logo(FIELD, svg, (7, 7), 2.0), svg, (20, 7), 2.0)
+    assert sum("text" in note.place or "text" in note.text for note in made.notes) == 1
+    for width in (1e-6, 1e9):
+        with pytest.raises(InputError, match="logo"):
+            with_logo(FIELD, svg, (7, 7), width)
+
+
 def test_obstacles_of_a_map_lie_where_it_says(tmp_path: Path) -> None:
     grid = np.full((40, 60), 254, dtype=np.uint8)
     grid[10:14, 20:30] = 0  # rows count from the top
