@@ -33,8 +33,14 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
     from optplan.domain.job import Drawing, Facade, Field
     from optplan.domain.options import Options
     from optplan.domain.progress import silent
+    from optplan.domain.robot import Boom
 
     options, progress = options or Options(), progress or silent
+    if isinstance(robot.mobility, Boom) and isinstance(job, Drawing | Field):
+        kind, usual = type(job).__name__.lower(), "line-marker" if isinstance(job, Field) else "beach-rake"
+        raise InputError(
+            f"a boom lift such as {robot.name} washes facades, this is a {kind}; expected {usual}", job.name
+        )
     if isinstance(job, Drawing):
         return _kept(cover_drawing(job, robot, options, progress), robot, options)
     if isinstance(job, Field):

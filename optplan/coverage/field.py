@@ -11,6 +11,7 @@ import numpy as np
 
 from optplan.coverage.clearing import with_free_ways
 from optplan.coverage.splitting import direction_notes, split_at_stops
+from optplan.coverage.stops import tolerance_of
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError, LimitError, located
 from optplan.domain.job import ACTUATIONS, Field, FieldSegment, Note
@@ -29,7 +30,7 @@ GOES_ON = 1e-3
 SHORTEST = 1.9
 """Shortest piece of a line that is cut, m."""
 SAG = 1e-4
-"""Between an arc and the chords that stand for it, m."""
+"""Between an arc and the chords that stand for it, m; less for tools of less tolerance."""
 ARC_POINTS = 16
 """Points of a circle are a multiple of this: so many entries are evenly spread."""
 MOST_TIMED = 200
@@ -46,6 +47,8 @@ class Chain(NamedTuple):
     segment: FieldSegment
     """the first of them"""
     id: str
+    inner: bool = False
+    """whether it lies between other lines of one wide segment: these do for cutting others"""
 
     @property
     def length(self) -> float:
@@ -72,7 +75,8 @@ def cover_field(job: Field, robot: Robot, options: Options, progress: ProgressCa
         progress(Progress("cover", 0.1, message=f"{len(marked)} segments"))
         chains = _joined(chains)
         pieces = _cut(chains) if options.cover.cut else chains
-        strokes = [_stroke(piece, robot) for piece in pieces]
+        tolerance = tolerance_of(options.page, robot.tool)
+        strokes = [_stroke(piece, robot, tolerance) for piece in pieces]
         strokes += [_spot(segment, number, robot, options) for segment in spots for number in range(segment.passes)]
         order = {segment.id: k for k, segment in enumerate(job.segments)}
         strokes.sort(key=lambda stroke: order[stroke.element])  # stable: pieces keep their order
@@ -192,7 +196,8 @@ def _wide(segment: FieldSegment, job: Field, robot: Robot) -> list[Chain]:
     for number in range(segment.passes):
         for side, aside in enumerate(sides):
             name = segment.id + (f"|{side + 1}" if count > 1 else "") + (f"#{number + 1}" if segment.passes > 1 else "")
-            made.append(Chain((primitive_of(segment, aside),), segment.closed, segment, name))
+            inner = 0 < side < count - 1
+            made.append(Chain((primitive_of(segment, aside),), segment.closed, segment, name, inner))
     return made
 
 
@@ -276,19 +281,23 @@ def _back(part: Primitive) -> Primitive:
 
 def _cut(chains: list[Chain]) -> list[Chain]:
     """Open lines and arcs cut where others meet them, into pieces of `SHORTEST` at least."""
+    near = _neighbours(chains)
     made: list[Chain] = []
     for k, chain in enumerate(chains):
         if chain.closed or chain.segment.directed or len(chain.parts) > 1:
             made.append(chain)
             continue
         (part,) = chain.parts
-        others = [other for j, owner in enumerate(chains) if j != k for other in owner.parts]
-        places = sorted(place for other in others for place in junctions(part, other, TOUCH))
+        places = sorted(place for other in near.get(k, ()) for place in junctions(part, other, TOUCH))
         cuts = [0.0]
         for place in places:
             if place - cuts[-1] >= SHORTEST and part.length - place >= SHORTEST:
                 cuts.append(place)
         cuts.append(part.length)
+        if len(made) + len(cuts) > MAX_STROKES:
+            raise LimitError(
+                f"there are more than {MAX_STROKES} pieces of lines; expected fewer, or whole lines (--whole)"
+            )
         for number, (a, b) in enumerate(pairwise(cuts), start=1):
             piece = Primitive(part.at(a), part.heading + part.curvature * a, part.curvature, b - a)
             name = chain.id if len(cuts) == 2 else f"{chain.id}~{number}"
@@ -296,14 +305,36 @@ def _cut(chains: list[Chain]) -> list[Chain]:
     return made
 
 
-def _stroke(chain: Chain, robot: Robot) -> Stroke:
+def _neighbours(chains: list[Chain]) -> dict[int, list[Primitive]]:
+    """For each chain that may be cut, what comes near its line."""
+    import shapely
+
+    parts = [(k, part, chain.inner) for k, chain in enumerate(chains) for part in chain.parts]
+    lines = [shapely.LineString(part.at(np.linspace(0, part.length, _points(part, SAG)))) for _, part, _ in parts]
+    others = [n for n, (_, _, inner) in enumerate(parts) if not inner]
+    tree = shapely.STRtree([lines[n] for n in others])
+    found: dict[int, list[Primitive]] = {}
+    for one, other in tree.query(lines, predicate="dwithin", distance=TOUCH + 2 * SAG).T.tolist():
+        k, (j, part, _) = parts[one][0], parts[others[other]]
+        if j != k:
+            found.setdefault(k, []).append(part)
+    return found
+
+
+def _points(part: Primitive, sag: float) -> int:
+    """How many points stand for a line or an arc so that chords between them leave it by `sag`, m, at most."""
+    turn = 2 * math.acos(max(1 - sag * abs(part.curvature), 0.5))
+    return 2 if part.curvature == 0 else max(2, math.ceil(part.length * abs(part.curvature) / turn)) + 1
+
+
+def _stroke(chain: Chain, robot: Robot, tolerance: float) -> Stroke:
     points: list[FloatArray] = []
+    sag = min(SAG, tolerance / 4)
     bends: list[float] = []
     for part in chain.parts:
         count = 1
         if part.curvature != 0:
-            turn = 2 * math.acos(max(1 - SAG * abs(part.curvature), 0.5))
-            count = max(2, math.ceil(part.length * abs(part.curvature) / turn))
+            count = _points(part, sag) - 1
             count = ARC_POINTS * math.ceil(count / ARC_POINTS) if chain.closed else count
         points.append(part.at(np.linspace(0, part.length, count, endpoint=False)))
         bends += [part.curvature] * count

@@ -157,9 +157,12 @@ def _missing(
         hit = len(near) > 0 and bool((shapely.distance(near, line) <= NEAR * limit).any())
         wanted = segment.passes * (segment.spot - 2 * NEAR * limit)
         return max(wanted - inside, 0.0) if hit else segment.spot
-    on_line = union(shapely, shapely.buffer(near, NEAR * limit)) if len(near) else shapely.Polygon()
     edges = [line] if spread == 0 else [_middle(shapely, segment, limit, side * spread / 2) for side in (1, -1)]
-    lost = sum(float(shapely.difference(edge, on_line).length) for edge in edges)
+    lost = 0.0
+    for edge in edges:
+        on_line = near[shapely.dwithin(near, edge, NEAR * limit)] if len(near) else near
+        covered = union(shapely, [*shapely.buffer(on_line, NEAR * limit), shapely.Polygon()])
+        lost += float(shapely.difference(edge, covered).length)
     if spread > 0 and lost <= GAP:
         marked = union(shapely, shapely.buffer(near, width / 2 + NEAR * limit))
         lost += float(shapely.difference(shapely.buffer(line, spread / 2, cap_style="flat"), marked).area) / width
