@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from optplan.cli import output
+from optplan.cli.meaning import refuse_meaningless
 from optplan.cli.settings import (
     ConfigFile,
     Cut,
@@ -63,6 +64,7 @@ def fleet_command(
         if target.exists() and not force:
             raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
     read = op.read(file)
+    refuse_meaningless(flags, read)
     machine = op.load_robot(robot or base.get("robot") or USUAL_ROBOTS[type(read).__name__])
     seconds = math.inf if options.order.seconds is None else options.order.seconds
     with output.progress_bar(quiet or json, " s") as tell, output.cancellable() as wished:
