@@ -157,3 +157,33 @@ def test_people_read_lengths_in_feet_and_yards(run: Runner, tmp_path: Path) -> N
         export_plan(plan, "pdf", tmp_path / f"{unit}.pdf", unit=unit)
     assert (tmp_path / "m.csv").read_text() == (tmp_path / "ft.csv").read_text() == Path("made/plan.csv").read_text()
     assert (tmp_path / "m.pdf").read_bytes() != (tmp_path / "ft.pdf").read_bytes()
+
+
+def test_a_folder_is_no_file_to_replace(run: Runner) -> None:
+    Path("folder").mkdir()
+    for words in (
+        ("field", "tennis", "-o", "folder"),
+        ("field", "tennis", "-o", "folder", "--force"),
+        ("cover", "pitch.json", "-o", "folder", "--force"),
+    ):
+        ran = run(*words)
+        assert (ran.code, "is a folder; expected the name of a file" in ran.err) == (2, True)
+    ran = run("fleet", "pitch.json", "-o", "two.svg", "--force")
+    assert (ran.code, "expected a folder" in ran.err) == (2, True)
+
+
+@pytest.mark.parametrize("words", [["check"], ["show"], ["export", "--to", "csv"], ["connect", "-o", "x.json"]])
+def test_a_job_that_is_no_plan_is_called_so(run: Runner, words: list[str]) -> None:
+    ran = run(words[0], "pitch.json", *words[1:])
+    assert ran.code == 2
+    assert ran.err.startswith("error: pitch.json: is a field, expected a plan")
+
+
+def test_what_a_placed_field_misses_is_printed(run: Runner) -> None:
+    ran = run("field", "basketball", "--align", "0,0 28,0 = 0,0 0,75", "-o", "b.json")
+    assert ran.code == 0
+    assert "23.500 m" in ran.out
+    assert run("field", "tennis", "--scale", "0", "-o", "t.json").code == 2
+    ran = run("field", "tennis", "--at", "1e30,0", "-o", "t.json")
+    assert (ran.code, "1e+30 m away" in ran.err) == (2, True)
+    assert not Path("t.json").exists()

@@ -251,6 +251,7 @@ def _plan_and_write(
     from optplan.domain.units import check_unit, length
     from optplan.exports import FORMATS
     from optplan.robots import USUAL_ROBOTS
+    from optplan.schema.files import refuse_existing
 
     given = flags or {}
     unit = given.get("unit")
@@ -268,8 +269,7 @@ def _plan_and_write(
     if folder.exists() and not folder.is_dir():
         raise InputError("is a file; expected a folder for the plan and its pictures", str(folder))
     for target in [*targets, *films, *([building] if building else [])]:  # find out before the work, not after it
-        if target.exists() and not force:
-            raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
+        refuse_existing(target, force)
     machine = op.load_robot(robot or USUAL_ROBOTS[type(read).__name__])
     order = options.order
     with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
@@ -325,15 +325,14 @@ def _stage(
 
     from optplan.domain.stop import StopRule
     from optplan.pipeline import plan_from, run_stage
+    from optplan.schema.files import refuse_existing
     from optplan.schema.plans import save_plan
 
     target = out or file
     if target.suffix.lower() in {".svg", ".svgz"}:
         hint = "another file" if out else "--output"
         raise InputError(f"is a drawing, which a plan would overwrite; say {hint}", str(target))
-    if target.exists() and not force:
-        hint = "say --output for a new file, or --force to replace it"
-        raise InputError(f"exists already; {hint}", str(target))
+    refuse_existing(target, force)
     earlier = _load(file, flags)
     refuse_meaningless(flags, earlier.job)
     options = settings_of(tables_of(earlier.options), flags)

@@ -8,7 +8,6 @@ import typer
 
 from optplan.cli import output
 from optplan.cli.settings import Force, Json, OutFile, PlanFile, Quiet, TimeLimit, pose, settings_of, tables_of
-from optplan.domain.errors import InputError
 
 
 def resume(
@@ -24,12 +23,12 @@ def resume(
 ) -> None:
     """Resume: the rest of a plan after an interruption, from where the robot stands."""
     import optplan as op
+    from optplan.schema.files import refuse_existing
     from optplan.schema.plans import save_plan
 
     earlier = op.load_plan(file)
     target = out or file.with_name(f"{file.stem}-rest{file.suffix}")
-    if target.exists() and not force:
-        raise InputError("exists already; say --output for a new file, or --force to replace it", str(target))
+    refuse_existing(target, force)
     tables = tables_of(earlier.options)
     tables["order"].update(pose(start, "--from"))
     with output.progress_bar(quiet or json) as tell:

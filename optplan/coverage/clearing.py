@@ -11,7 +11,7 @@ import numpy as np
 from optplan.coverage.beside import beside
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
-from optplan.domain.job import Note
+from optplan.domain.job import Field, Note
 from optplan.domain.options import Options
 from optplan.domain.robot import DiffDrive, Robot
 from optplan.domain.stroke import Stroke
@@ -30,6 +30,22 @@ def marking_clearance(robot: Robot, options: Options) -> float:
     """
     half = robot.mobility.track / 2 if isinstance(robot.mobility, DiffDrive) else math.inf
     return min(options.connect.clearance, half)
+
+
+def refuse_bad_areas(job: Field, options: Options) -> None:
+    """InputError for polygons that are none, or cross themselves."""
+    import shapely
+
+    asked = options.connect
+    rooms = [("keep_in", np.array(ring)) for ring in (job.keep_in, asked.keep_in) if ring is not None]
+    rings = [(f"keep_out[{k}]", np.array(ring)) for k, ring in enumerate((*job.keep_out, *asked.keep_out))]
+    for name, ring in (*rooms, *rings):
+        if len(ring) < 3:
+            raise InputError(f"{name} has {len(ring)} corners; expected 3 or more")
+        polygon = shapely.Polygon(ring)
+        if not polygon.is_valid or polygon.area == 0:
+            reason = shapely.is_valid_reason(polygon) if polygon.area > 0 else "its area is 0"
+            raise InputError(f"{name} is no simple polygon: {reason}; expected a border that does not cross itself")
 
 
 def with_free_ways(strokes: list[Stroke], robot: Robot, options: Options) -> tuple[list[Stroke], list[Note]]:

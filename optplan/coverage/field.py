@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from optplan.coverage.clearing import with_free_ways
+from optplan.coverage.clearing import refuse_bad_areas, with_free_ways
 from optplan.coverage.splitting import direction_notes, split_at_stops
 from optplan.coverage.stops import tolerance_of
 from optplan.domain.arrays import FloatArray
@@ -69,6 +69,7 @@ def cover_field(job: Field, robot: Robot, options: Options, progress: ProgressCa
         notes += _width_notes(marked, job, robot)
         if not marked:
             raise InputError("nothing is to be marked; expected a segment whose actuation is not NONE")
+        refuse_bad_areas(job, options)
         spots = [segment for segment in marked if segment.spot > 0]
         _refuse_too_many(marked, job, robot)
         chains = [part for segment in marked if segment.spot == 0 for part in _wide(segment, job, robot)]
@@ -312,6 +313,8 @@ def _neighbours(chains: list[Chain]) -> dict[int, list[Primitive]]:
     parts = [(k, part, chain.inner) for k, chain in enumerate(chains) for part in chain.parts]
     lines = [shapely.LineString(part.at(np.linspace(0, part.length, _points(part, SAG)))) for _, part, _ in parts]
     others = [n for n, (_, _, inner) in enumerate(parts) if not inner]
+    if not parts:
+        return {}
     tree = shapely.STRtree([lines[n] for n in others])
     found: dict[int, list[Primitive]] = {}
     for one, other in tree.query(lines, predicate="dwithin", distance=TOUCH + 2 * SAG).T.tolist():

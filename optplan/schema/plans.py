@@ -55,6 +55,10 @@ class AreaModel(Model):
     tool: Whole
 
 
+KINDS = ("drawing", "field", "facade", "surface")
+"""Of jobs."""
+
+
 class CoverModel(Model):
     """Strokes and what they have to look like."""
 
@@ -190,6 +194,8 @@ def load_plan(file: str | FilePath) -> Plan:
 def plan_from_json(text: str | bytes, where: str = "plan") -> Plan:
     """A plan from JSON text; raises like `load_plan`."""
     data = parse_json(text, where)
+    if isinstance(data, dict) and "job" not in data and data.get("kind") in KINDS:
+        raise InputError(f"is a {data['kind']}, expected a plan; say optplan plan to make one", where)
     check_version(data, where)
     try:
         model = PlanModel.model_validate(data)

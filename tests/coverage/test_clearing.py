@@ -111,3 +111,18 @@ def test_the_judge_sees_a_robot_that_marks_through_an_obstacle() -> None:
     verdict, depth = areas(replace(moved, report=op.verify(moved)))
     assert verdict == "failed"
     assert depth == pytest.approx(0.211, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("ring", "says"),
+    [
+        ([[-9, -9], [30, 9], [30, -9], [-9, 9]], "crosses? itself|cross"),
+        ([[0, 0], [1, 1]], "2 corners"),
+        ([[0, 0], [1, 1], [2, 2]], "area is 0"),
+    ],
+)
+def test_areas_that_are_no_polygons_are_named_first(ring: list[list[float]], says: str) -> None:
+    with pytest.raises(InputError, match=f"keep_in.*({says})"):
+        op.cover(Field("x", (SIDE,), keep_in=array(ring, dtype=float)), MARKER)
+    with pytest.raises(InputError, match=rf"keep_out\[1\].*({says})"):
+        op.cover(Field("x", (SIDE,), keep_out=(LEFT, array(ring, dtype=float))), MARKER)

@@ -130,6 +130,12 @@ def test_an_arc_no_way_fits_is_an_error_with_its_name() -> None:
         op.plan(Field("x", (tight,)), limited)
 
 
+def test_parts_of_parts_are_counted_through() -> None:
+    cover = op.cover(Field("x", (circle("ring", (0, 0), 0.35),)), _wide_turning(3.0))
+    assert len(cover.strokes) > 2
+    assert [stroke.id for stroke in cover.strokes] == [f"ring~{k + 1}" for k in range(len(cover.strokes))]
+
+
 @pytest.mark.parametrize(
     ("make", "names"),
     [
