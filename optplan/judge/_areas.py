@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from optplan.domain.arrays import FloatArray
 from optplan.domain.job import Field, Job
 from optplan.domain.options import Options
 from optplan.domain.path import Path
@@ -47,11 +46,15 @@ def areas(path: Path, samples: Samples, cover: Cover, options: Options, job: Job
     worst, place = 0.0, None
     wrong = [0, 0]  # pieces of connectors, of marks
     judged = path.length > 0 if field is not None else (path.stroke < 0) & (path.length > 0)
+    tree = shapely.STRtree([polygon for polygon, outside in outlines if outside])
     for row in np.flatnonzero(judged).tolist():
         marking = bool(path.stroke[row] >= 0)
         clearance = min(asked.clearance, half) if marking else asked.clearance
         points = samples.points[samples.first[row] : samples.first[row + 1], :2]
-        near, spot = _nearness(shapely, outlines, points, clearance)
+        line = shapely.LineString(points) if len(points) > 1 else shapely.Point(points[0])
+        # what is farther away breaks nothing
+        close = [outlines[k] for k in np.sort(tree.query(line, predicate="dwithin", distance=clearance)).tolist()]
+        near, spot = _nearness(shapely, close + outlines[len(rings) :], line, clearance)
         wrong[marking] += near > _slack(clearance)
         if near > worst:
             worst, place = near, spot
@@ -67,10 +70,9 @@ def _slack(clearance: float) -> float:
 
 
 def _nearness(
-    shapely: Any, outlines: list[tuple[Any, bool]], points: FloatArray, clearance: float
+    shapely: Any, outlines: list[tuple[Any, bool]], line: Any, clearance: float
 ) -> tuple[float, Place | None]:
     """How much nearer than the clearance a chain of samples comes, m, and where."""
-    line = shapely.LineString(points) if len(points) > 1 else shapely.Point(points[0])
     worst, place = 0.0, None
     for polygon, outside in outlines:
         kept = not shapely.intersects(polygon, line) if outside else shapely.contains_properly(polygon, line)
