@@ -179,6 +179,12 @@ def test_a_job_that_is_no_plan_is_called_so(run: Runner, words: list[str]) -> No
     assert ran.err.startswith("error: pitch.json: is a field, expected a plan")
 
 
+def test_a_plan_that_is_no_job_is_called_so(run: Runner) -> None:
+    assert run("cover", "pitch.json", "-o", "1.json").code == 0
+    ran = run("plan", "1.json")
+    assert (ran.code, "1.json: is a plan, expected a job" in ran.err) == (2, True)
+
+
 def test_what_a_placed_field_misses_is_printed(run: Runner) -> None:
     ran = run("field", "basketball", "--align", "0,0 28,0 = 0,0 0,75", "-o", "b.json")
     assert ran.code == 0

@@ -44,7 +44,7 @@ def refuse_bad_areas(job: Field, options: Options) -> None:
             raise InputError(f"{name} has {len(ring)} corners; expected 3 or more")
         polygon = shapely.Polygon(ring)
         if not polygon.is_valid or polygon.area == 0:
-            reason = shapely.is_valid_reason(polygon) if polygon.area > 0 else "its area is 0"
+            reason = "its area is 0" if polygon.is_valid else shapely.is_valid_reason(polygon)
             raise InputError(f"{name} is no simple polygon: {reason}; expected a border that does not cross itself")
 
 
@@ -58,9 +58,24 @@ def with_free_ways(strokes: list[Stroke], robot: Robot, options: Options) -> tup
     ------
     InputError : a stroke of which no direction is free, by name
     """
+    made, notes = [], []
+    for stroke, found in zip(strokes, _reasons(strokes, robot, options), strict=True):
+        kept, note = _left(stroke, found)
+        made.append(kept)
+        notes += note
+    return made, notes
+
+
+def stuck(strokes: list[Stroke], robot: Robot, options: Options) -> list[bool]:
+    """Whether no direction of each stroke keeps clear of areas, though there are some that can be steered."""
+    return [bool(found) and all(found.values()) for found in _reasons(strokes, robot, options)]
+
+
+def _reasons(strokes: list[Stroke], robot: Robot, options: Options) -> list[dict[int, str]]:
+    """For each stroke why each of its directions is none; empty where it is one."""
     areas = _Areas(robot, options)
     if not areas.polygons:
-        return strokes, []
+        return [{} for _ in strokes]
     ways: list[tuple[int, int, FloatArray]] = []
     for k, stroke in enumerate(strokes):
         ways += [(k, number, points) for number, points in _ways(stroke, robot, options)]
@@ -68,12 +83,7 @@ def with_free_ways(strokes: list[Stroke], robot: Robot, options: Options) -> tup
     own: list[dict[int, str]] = [{} for _ in strokes]
     for (k, number, _), reason in zip(ways, reasons, strict=True):
         own[k][number] = reason
-    made, notes = [], []
-    for stroke, found in zip(strokes, own, strict=True):
-        kept, note = _left(stroke, found)
-        made.append(kept)
-        notes += note
-    return made, notes
+    return own
 
 
 def _ways(stroke: Stroke, robot: Robot, options: Options) -> list[tuple[int, FloatArray]]:

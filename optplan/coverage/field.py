@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from optplan.coverage.clearing import refuse_bad_areas, with_free_ways
+from optplan.coverage.clearing import refuse_bad_areas, stuck, with_free_ways
 from optplan.coverage.splitting import direction_notes, split_at_stops
 from optplan.coverage.stops import tolerance_of
 from optplan.domain.arrays import FloatArray
@@ -49,6 +49,8 @@ class Chain(NamedTuple):
     id: str
     inner: bool = False
     """whether it lies between other lines of one wide segment: these do for cutting others"""
+    members: tuple[Chain, ...] = ()
+    """what it was joined of"""
 
     @property
     def length(self) -> float:
@@ -74,9 +76,9 @@ def cover_field(job: Field, robot: Robot, options: Options, progress: ProgressCa
         _refuse_too_many(marked, job, robot)
         chains = [part for segment in marked if segment.spot == 0 for part in _wide(segment, job, robot)]
         progress(Progress("cover", 0.1, message=f"{len(marked)} segments"))
-        chains = _joined(chains)
+        tolerance, areas = tolerance_of(options.page, robot.tool), with_areas(job, robot, options)
+        chains = _apart(_joined(chains), robot, areas, tolerance)
         pieces = _cut(chains) if options.cover.cut else chains
-        tolerance = tolerance_of(options.page, robot.tool)
         strokes = [_stroke(piece, robot, tolerance) for piece in pieces]
         strokes += [_spot(segment, number, robot, options) for segment in spots for number in range(segment.passes)]
         order = {segment.id: k for k, segment in enumerate(job.segments)}
@@ -84,7 +86,7 @@ def cover_field(job: Field, robot: Robot, options: Options, progress: ProgressCa
         _refuse_obstructed(strokes, job, options)
         strokes, _ = split_at_stops(strokes, robot, options)
         notes += direction_notes(strokes, robot, options)
-        strokes, lost = with_free_ways(strokes, robot, with_areas(job, robot, options))
+        strokes, lost = with_free_ways(strokes, robot, areas)
         notes += lost
         progress(Progress("cover", 1.0, message=f"{len(strokes)} strokes"))
         return Cover(tuple(strokes), start=job.start, notes=tuple(notes))
@@ -256,8 +258,17 @@ def _joined(chains: list[Chain]) -> list[Chain]:
             continue
         parts = tuple(chains[j].parts[0] if way else _back(chains[j].parts[0]) for j, way in run)
         lead = min(run, key=lambda entry: entry[0])[0]
-        made.append(Chain(parts, ring, chains[lead].segment, f"{chains[lead].id}+"))
+        members = tuple(chains[j] for j, _ in run)
+        made.append(Chain(parts, ring, chains[lead].segment, f"{chains[lead].id}+", members=members))
     return made
+
+
+def _apart(chains: list[Chain], robot: Robot, options: Options, tolerance: float) -> list[Chain]:
+    """Chains without those that obstacles block in both directions: what they were joined of may be free on its own."""
+    long = [chain for chain in chains if chain.members]
+    blocked = stuck([_stroke(chain, robot, tolerance) for chain in long], robot, options)
+    gone = {chain.id for chain, is_stuck in zip(long, blocked, strict=True) if is_stuck}
+    return [part for chain in chains for part in (chain.members if chain.id in gone else (chain,))]
 
 
 def _beginning(k: int, partner: dict[tuple[int, bool], tuple[int, bool]]) -> tuple[int, bool, bool]:

@@ -351,9 +351,12 @@ class Field:
         if self.keep_in is not None:
             object.__setattr__(self, "keep_in", frozen_floats(self.keep_in, "keep_in", (None, 2)))
         object.__setattr__(self, "keep_out", tuple(frozen_floats(p, "keep_out", (None, 2)) for p in self.keep_out))
-        for points in (self.keep_in, *self.keep_out):
+        polygons = [("keep_in", self.keep_in), *((f"keep_out[{k}]", ring) for k, ring in enumerate(self.keep_out))]
+        for name, points in polygons:
             if points is not None:
-                _near(points, "a polygon")
+                if len(points) < 3:
+                    raise InputError(f"{name} has {len(points)} corners; expected 3 or more")
+                _near(points, name)
         if self.line_width is not None and not 0 < self.line_width <= MOST_METRES:
             raise InputError(f"the line width is {self.line_width} m; expected more than 0, at most {MOST_METRES:g} m")
         if self.start is not None:

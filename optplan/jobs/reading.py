@@ -102,6 +102,8 @@ def _read_json(file: Path) -> Job:
         from optplan.jobs.washing import facade_of_case
 
         return facade_of_case(data, file)
+    if isinstance(data, dict) and data.get("format") == "optplan plan":
+        raise InputError("is a plan, expected a job; a plan is looked at by optplan check, show, export", str(file))
     check_version(data, str(file))
     try:
         model = TypeAdapter(JobModel).validate_python(data)

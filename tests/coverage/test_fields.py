@@ -154,7 +154,7 @@ def test_parts_of_parts_are_counted_through() -> None:
         (lambda: line("a", (0, 0), (1e29, 0)), "'a'.*1e\\+29.*1e\\+06"),
         (lambda: line("a", (0, 0), (1, 0), width=1e8), "'a'.*width"),
         (lambda: Field("x", TEE, start=(1e9, 0)), "start"),
-        (lambda: Field("x", TEE, keep_out=(array([[0, 0], [1e9, 0], [0, 1]]),)), "polygon"),
+        (lambda: Field("x", TEE, keep_out=(array([[0, 0], [1e9, 0], [0, 1]]),)), "keep_out"),
         (lambda: Field("x", TEE, anchor=Anchor(88, 0, 0)), "no place"),
         (lambda: Field("x", TEE, anchor=Anchor(50, 0, 1e300)), "no place"),
         (lambda: op.cover(Field("x", (line("a", (0, 0), (60, 0), width=1e6),)), MARKER), "8333334 of them.*'a'"),
