@@ -29,7 +29,7 @@ def sheet(plan: Plan, unit: str = "m") -> Figure:
     from matplotlib.figure import Figure
 
     picture = io.BytesIO()
-    drawn = figure(plan)
+    drawn = figure(plan, unit)
     drawn.savefig(picture, format="png", dpi=220)
     picture.seek(0)
     from PIL import Image
