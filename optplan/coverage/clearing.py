@@ -33,10 +33,13 @@ def marking_clearance(robot: Robot, options: Options) -> float:
 
 
 def refuse_bad_areas(job: Field, options: Options) -> None:
-    """InputError for polygons that are none, or cross themselves."""
+    """InputError for polygons that are none, or cross themselves, and for a start that the robot cannot stand on."""
     import shapely
 
     asked = options.connect
+    if asked.on_canvas:
+        raise InputError("connectors are to stay on the canvas, which a field does not have; expected keep_in instead")
+    start = options.order.start or job.start
     rooms = [("keep_in", np.array(ring)) for ring in (job.keep_in, asked.keep_in) if ring is not None]
     rings = [(f"keep_out[{k}]", np.array(ring)) for k, ring in enumerate((*job.keep_out, *asked.keep_out))]
     for name, ring in (*rooms, *rings):
@@ -46,6 +49,11 @@ def refuse_bad_areas(job: Field, options: Options) -> None:
         if not polygon.is_valid or polygon.area == 0:
             reason = "its area is 0" if polygon.is_valid else shapely.is_valid_reason(polygon)
             raise InputError(f"{name} is no simple polygon: {reason}; expected a border that does not cross itself")
+        if start is not None and shapely.intersects_xy(polygon, *start) == (not name.startswith("keep_in")):
+            side = "outside" if name.startswith("keep_in") else "inside"
+            raise InputError(
+                f"the start ({start[0]:g}, {start[1]:g}) lies {side} {name}; expected a place that is free"
+            )
 
 
 def with_free_ways(strokes: list[Stroke], robot: Robot, options: Options) -> tuple[list[Stroke], list[Note]]:

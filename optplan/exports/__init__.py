@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -155,6 +156,8 @@ def unfit(name: str, job: Job) -> str:
         return f"is not written for a {kind}; it is for {' and '.join(f'{k}s' for k in kinds)}"
     if name == "geojson" and getattr(job, "anchor", None) is None:
         return f"{job.name} lies nowhere on earth; expected a field with an anchor (optplan field --anchor)"
+    if name == "geojson" and find_spec("pyproj") is None:
+        return "places on earth need pyproj: install optplan[geo]"
     return ""
 
 

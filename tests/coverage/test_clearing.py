@@ -135,3 +135,17 @@ def test_areas_that_are_no_polygons_are_named_first(ring: list[list[float]], say
         op.cover(Field("x", (SIDE,), keep_in=array(ring, dtype=float)), MARKER)
     with pytest.raises(InputError, match=rf"keep_out\[1\].*{says}"):
         op.cover(Field("x", (SIDE,), keep_out=(LEFT, array(ring, dtype=float))), MARKER)
+
+
+def test_a_start_that_is_not_free_is_refused_before_any_order() -> None:
+    fence = array([[-5, -5], [25, -5], [25, 9], [-5, 9]], dtype=float)
+    with pytest.raises(InputError, match=r"start \(10, 0.5\) lies inside keep_out\[0\]"):
+        op.cover(Field("x", (SIDE,), keep_out=(LEFT,), start=(10, 0.5)), MARKER)
+    with pytest.raises(InputError, match="outside keep_in"):
+        op.cover(Field("x", (SIDE,), keep_in=fence), MARKER, Options(order=OrderOptions(start=(30.0, 0.0))))
+    op.cover(Field("x", (SIDE,), keep_in=fence, keep_out=(LEFT,), start=(0, -3)), MARKER)
+
+
+def test_a_field_has_no_canvas_to_stay_on() -> None:
+    with pytest.raises(InputError, match="canvas"):
+        op.cover(Field("x", (SIDE,)), MARKER, Options(connect=ConnectOptions(on_canvas=True)))
