@@ -86,15 +86,21 @@ def plan_fleet(
 
     Raises
     ------
-    InputError : as `optplan.plan`; a number of robots out of range; rules of order or enforced connections, which do
-        not go together with several robots
+    InputError : as `optplan.plan`; a number of robots or a room out of range; a start point, rules of order or enforced
+        connections, which do not go together with several robots
     """
     if isinstance(count, bool) or not 1 <= count <= MOST:
         raise InputError(f"a fleet of {count} robots; expected 1..{MOST}")
     machine, tell, chosen = load_robot(robot), progress or silent, options or Options()
     if isinstance(job, Field):
         chosen = with_areas(job, machine, chosen)
+    width = machine.mobility.track if isinstance(machine.mobility, DiffDrive) else 0.0
+    kept_apart = ROOM * width if room is None else room
+    if not (math.isfinite(kept_apart) and kept_apart >= 0):
+        raise InputError(f"the room between robots is {room} m; expected a finite number, 0 or more")
+    _refuse_one_start(chosen.order.start or getattr(job, "start", None), count, kept_apart)
     made = cover(job, machine, chosen, tell)
+    _refuse_one_start(made.start, count, kept_apart)
     if isinstance(job, Field):
         chosen = with_metric(made, machine, chosen)
     if made.precedence or made.links:
@@ -113,12 +119,11 @@ def plan_fleet(
     plans = []
     for nodes in shares.paths:
         kept = sorted({int(ways.stroke[node]) for node in nodes})
-        part = replace(made, strokes=tuple(made.strokes[k] for k in kept))
+        others = tuple(stroke for k, stroke in enumerate(made.strokes) if k not in kept)
+        part = replace(made, strokes=tuple(made.strokes[k] for k in kept), elsewhere=others)
         visits = ways.take(nodes)
         own = replace(visits, stroke=np.array([kept.index(k) for k in visits.stroke.tolist()], dtype=np.int64))
         plans.append(plan_from(_ordered(job, machine, chosen, part, own, problem.cost_of(nodes)), "connect", tell))
-    width = machine.mobility.track if isinstance(machine.mobility, DiffDrive) else 0.0
-    kept_apart = ROOM * width if room is None else room
     starts = _starts(plans, kept_apart)
     durations = [0.0 if plan.trajectory is None else plan.trajectory.duration for plan in plans]
     makespan = max((s + d for s, d in zip(starts, durations, strict=True)), default=0.0)
@@ -130,6 +135,15 @@ def plan_fleet(
         nearest_approach(plans, starts)[0],
         kept_apart,
     )
+
+
+def _refuse_one_start(start: tuple[float, float] | None, count: int, room: float) -> None:
+    """InputError where several robots would stand on one spot."""
+    if start is not None and count > 1 and room > 0:
+        raise InputError(
+            f"{count} robots would all start at ({start[0]:g}, {start[1]:g}), {room:.3g} m are to lie between them; "
+            "expected no start point: each begins where its part of the work does"
+        )
 
 
 def _ordered(job: Job, robot: Robot, options: Options, part: Cover, visits: object, cost: float) -> Plan:

@@ -26,7 +26,7 @@ from optplan.domain.stop import StopRule
 from optplan.judge import verify
 from optplan.ordering import solve
 from optplan.problem import problem_of
-from optplan.refilling import with_refills, without_refills
+from optplan.refilling import check_refills, with_refills, without_refills
 from optplan.robots import USUAL_ROBOTS, load_robot
 from optplan.timing.fastest import profile
 
@@ -119,6 +119,8 @@ def _order(before: Plan, progress: ProgressCallback, stop: StopRule | None) -> P
     before = replace(before, cover=without_refills(before.cover))
     assert before.cover is not None
     job, robot, options = before.job, before.robot, before.options
+    if not isinstance(job, Facade):
+        check_refills(before.cover, options)
     ways, problem = problem_of(job, before.cover, robot, options, progress)
     order = options.order
     rule = stop or StopRule(seconds=order.seconds or math.inf, iterations=order.iterations)

@@ -41,38 +41,56 @@ def with_refills(
     -------
     the order, the ways of driving strokes and stops, of which it chooses, and the strokes with the stops behind them
 
-    Raises
-    ------
-    InputError : there is no start point, or a stroke is longer than a tank lasts
+    What cannot be is refused by `check_refills` before there is an order.
     """
     lasts = options.order.refill
     start = options.order.start or cover.start
-    if lasts is None or not math.isfinite(found.cost) or len(found.nodes) == 0:
+    if lasts is None or start is None or not math.isfinite(found.cost) or len(found.nodes) == 0:
         return found, ways, cover
-    if start is None:
-        raise InputError("the tank is filled where the robot starts; expected a start point (--start)")
     nodes = found.nodes
-    marks = np.array([ways.length[n] if cover.strokes[int(ways.stroke[n])].tool > RAISED else 0.0 for n in nodes])
-    worst = int(np.argmax(marks))
-    if marks[worst] > lasts * (1 + 1e-9):
-        name = cover.strokes[int(ways.stroke[nodes[worst]])].id
-        raise InputError(f"stroke {name!r} takes {marks[worst]:.4g} m of marks, a tank lasts {lasts:.4g} m")
+    marks = _marks(cover)[ways.stroke[nodes]]
     entry, leave = padded(ways, options)
     family = family_of(robot, options)
     stop = np.zeros(5)
-    place = (start[0] - robot.offset.ahead, start[1] + robot.offset.right)
-    stop[:2] = place
+    # as at the beginning, the robot's middle is where it starts; it stands there facing east
+    stop[:2] = start
+    tool = (start[0] + robot.offset.ahead, start[1] - robot.offset.right)
     here = np.tile(stop, (len(nodes), 1))
     to_stop, from_stop = family.costs(leave[nodes], here), family.costs(here, entry[nodes])
     arcs = dense_costs(problem)[nodes[:-1], nodes[1:]]
     detour = to_stop[:-1] + from_stop[1:] - arcs
     cuts = _cheapest(marks, detour, lasts)
-    return _inserted(found, ways, cover, cuts, stop, start, options, detour)
+    return _inserted(found, ways, cover, cuts, stop, tool, options, detour)
+
+
+def check_refills(cover: Cover, options: Options) -> None:
+    """InputError, before any order is looked for, when the tank cannot be filled as asked: there is no start point, or
+    a stroke is longer than a tank lasts."""
+    lasts = options.order.refill
+    if lasts is None or not cover.strokes:
+        return
+    if (options.order.start or cover.start) is None:
+        raise InputError("the tank is filled where the robot starts; expected a start point (--start)")
+    marks = _marks(cover)
+    worst = int(np.argmax(marks))
+    if marks[worst] > lasts * (1 + 1e-9):
+        name = cover.strokes[worst].id
+        raise InputError(f"stroke {name!r} takes {marks[worst]:.4g} m of marks, a tank lasts {lasts:.4g} m")
+
+
+def _marks(cover: Cover) -> FloatArray:
+    """(n,) metres of marks of each stroke"""
+    return np.array([stroke.length if stroke.tool > RAISED else 0.0 for stroke in cover.strokes])
+
+
+def fills_tank(stroke: Stroke) -> bool:
+    """Whether a stroke is such a stop."""
+    return stroke.is_stop and stroke.id.startswith(NAME)
 
 
 def without_refills(cover: Cover) -> Cover:
     """The strokes alone, to be ordered again."""
-    kept = tuple(stroke for stroke in cover.strokes if not (stroke.is_stop and stroke.id.startswith(NAME)))
+    kept = tuple(stroke for stroke in cover.strokes if not fills_tank(stroke))
     return cover if len(kept) == len(cover.strokes) else replace(cover, strokes=kept)
 
 
@@ -104,7 +122,7 @@ def _inserted(
     cover: Cover,
     cuts: list[int],
     stop: FloatArray,
-    start: tuple[float, float],
+    tool: tuple[float, float],
     options: Options,
     detour: FloatArray,
 ) -> tuple[Ordering, Traversals, Cover]:
@@ -113,7 +131,7 @@ def _inserted(
         return replace(found, message=text.removeprefix("; ")), ways, cover
     first = len(cover.strokes)
     dwell = options.order.refill_time
-    stops = tuple(Stroke(f"{NAME}{k}", np.array([start]), tool=RAISED, dwell=dwell) for k in range(1, len(cuts) + 1))
+    stops = tuple(Stroke(f"{NAME}{k}", np.array([tool]), tool=RAISED, dwell=dwell) for k in range(1, len(cuts) + 1))
     count = len(cuts)
     more = Traversals(
         np.concatenate([ways.stroke, np.arange(first, first + count)]),

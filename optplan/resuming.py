@@ -60,8 +60,10 @@ def resumed(
 def _rest(cover: Cover, number: dict[int, int]) -> Cover:
     """The cover of the strokes that are left, with their new numbers."""
     done = {stroke.element for k, stroke in enumerate(cover.strokes) if k not in number}
+    before = tuple(stroke for k, stroke in enumerate(cover.strokes) if k not in number)
     return replace(
         cover,
+        elsewhere=cover.elsewhere + before,
         strokes=tuple(cover.strokes[old] for old in number),
         areas=tuple(area for area in cover.areas if area.element not in done),
         precedence=tuple((number[a], number[b]) for a, b in cover.precedence if a in number and b in number),

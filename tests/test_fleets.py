@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise, permutations, product
 
 import numpy as np
@@ -111,3 +112,17 @@ def test_bad_fleets() -> None:
             op.plan_fleet(field, "line-marker", count)
     with pytest.raises(InputError, match="rules of order"):
         op.plan_fleet(field, "line-marker", 2, Options(order=OrderOptions(metric="cc", keep="order")))
+
+
+def test_robots_on_one_spot_are_refused_before_anything_is_planned(monkeypatch: pytest.MonkeyPatch) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("a division was looked for")
+
+    monkeypatch.setattr("optplan.fleets.shared", never)
+    field, start = _lines(6, 1), Options(order=OrderOptions(metric="cc", start=(0.0, -5.0)))
+    with pytest.raises(InputError, match=r"2 robots would all start at \(0, -5\).*no start point"):
+        op.plan_fleet(field, "line-marker", 2, start)
+    with pytest.raises(InputError, match="no start point"):
+        op.plan_fleet(replace(field, start=(1.0, 2.0)), "line-marker", 2)
+    with pytest.raises(InputError, match="room"):
+        op.plan_fleet(field, "line-marker", 2, room=math.nan)

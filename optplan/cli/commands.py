@@ -15,6 +15,8 @@ from optplan.cli.fleets import fleet_command
 from optplan.cli.inputs import facade_file, is_job, refuse_job
 from optplan.cli.listings import instances, robots, schema, solvers
 from optplan.cli.looking import check, export, show, simulate
+from optplan.cli.meaning import flag_of, refuse_exports, refuse_meaningless
+from optplan.cli.resuming import resume
 from optplan.cli.settings import (
     Areas,
     Avoid,
@@ -42,6 +44,7 @@ from optplan.cli.settings import (
     Json,
     Keep,
     Kind,
+    LengthUnit,
     Lift,
     Links,
     Margin,
@@ -72,7 +75,6 @@ from optplan.cli.settings import (
     Water,
     WorkSpeed,
     config_text,
-    pose,
     read_config,
     settings_of,
     tables_of,
@@ -186,6 +188,7 @@ def plan_command(
     horizontal: Horizontal = None,
     travel: Travel = None,
     lift: Lift = None,
+    units: LengthUnit = "m",
 ) -> None:
     """Plan a job: writes plan.json and a picture, checks the plan and prints the findings."""
     from optplan.instances import shipped_or_file
@@ -199,9 +202,7 @@ def plan_command(
         print(config_text(options, chosen or "beach-rake"), end="")
         return
     folder = out or Path(f"{job.stem}-plan")
-    _plan_and_write(
-        job, chosen, options, folder, export or [], force, quiet, json, close_gap, entry, kind=kind, unit=unit
-    )
+    _plan_and_write(job, chosen, options, folder, export or [], force, quiet, json, flags)
 
 
 @app.command()
@@ -240,36 +241,36 @@ def _plan_and_write(
     force: bool,
     quiet: bool,
     json: bool,
-    close_gap: float | None = None,
-    entry: list[str] | None = None,
+    flags: dict[str, Any] | None = None,
     film: bool = False,
-    kind: str | None = None,
-    unit: str | None = None,
 ) -> None:
     import math
 
     import optplan as op
     from optplan.domain.facade import Facade
     from optplan.domain.stop import StopRule
-    from optplan.domain.units import length
+    from optplan.domain.units import check_unit, length
     from optplan.exports import FORMATS
     from optplan.robots import USUAL_ROBOTS
+    from optplan.schema.files import refuse_existing
 
-    unknown = [name for name in export if name not in FORMATS]
-    if unknown:
-        raise InputError(f"there is no format {unknown[0]!r}; expected one of {', '.join(FORMATS)}", "--export")
+    given = flags or {}
+    unit = given.get("unit")
+    read = op.read(
+        job, close_gap=given.get("close_gap"), kind=given.get("kind"), unit=None if unit is None else length(unit)
+    )
+    refuse_meaningless(given, read, job)
+    refuse_exports(export, read)
+    read = with_entries(read, given.get("entry"))
+    lengths = check_unit(given.get("units", "m"))
     targets = [folder / "plan.json", folder / "picture.png", folder / "picture.svg"]
     targets += [folder / f"plan{FORMATS[name].suffix}" for name in export]
     films = [folder / "film.gif"] if film else []
-    read = with_entries(
-        op.read(job, close_gap=close_gap, kind=kind, unit=None if unit is None else length(unit)), entry
-    )
     building = folder / "building.png" if isinstance(read, Facade) else None
     if folder.exists() and not folder.is_dir():
         raise InputError("is a file; expected a folder for the plan and its pictures", str(folder))
     for target in [*targets, *films, *([building] if building else [])]:  # find out before the work, not after it
-        if target.exists() and not force:
-            raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
+        refuse_existing(target, force)
     machine = op.load_robot(robot or USUAL_ROBOTS[type(read).__name__])
     order = options.order
     with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
@@ -288,16 +289,16 @@ def _plan_and_write(
         targets.append(building)
     if plan.path is not None:
         for name, target in zip(export, targets[3 : 3 + len(export)], strict=True):
-            op.export_plan(plan, name, target, overwrite=force)
+            op.export_plan(plan, name, target, overwrite=force, unit=lengths)
         if film and plan.trajectory is not None:
             op.animate(plan, films[0], overwrite=force)
             targets += films
     written = [str(target) for target in targets if target.exists()]
     exports = {folder / f"plan{kind.suffix}" for kind in FORMATS.values()} - set(targets)
-    _tell(plan, written, json, [str(file) for file in sorted(exports) if file.exists()])
+    _tell(plan, written, json, [str(file) for file in sorted(exports) if file.exists()], lengths)
 
 
-def _tell(plan: Plan, written: list[str], json: bool, older: Sequence[str] = ()) -> None:
+def _tell(plan: Plan, written: list[str], json: bool, older: Sequence[str] = (), lengths: str = "m") -> None:
     """Print a finished plan; exit 1 unless it was verified."""
     good = plan.report is not None and plan.report.ok
     if json:
@@ -307,7 +308,7 @@ def _tell(plan: Plan, written: list[str], json: bool, older: Sequence[str] = ())
         if plan.ordering is not None:
             output.print_order(plan.ordering)
         if plan.report is not None:
-            output.print_report(plan.report)
+            output.print_report(plan.report, lengths)
         verdict = "planned and verified" if good else "NO VALID PLAN" if plan.path is None else "A CHECK FAILED"
         print(f"{verdict}; written:")
         for file in written:
@@ -326,6 +327,7 @@ def _stage(
 
     from optplan.domain.stop import StopRule
     from optplan.pipeline import plan_from, run_stage
+    from optplan.schema.files import refuse_existing
     from optplan.schema.plans import save_plan
 
     target = out or file
@@ -334,10 +336,9 @@ def _stage(
         raise InputError(f"is a drawing, which a plan would overwrite; say {hint}", str(target))
     if "robot" not in flags:
         refuse_job(stage, file)
-    if target.exists() and not force:
-        hint = "say --output for a new file, or --force to replace it"
-        raise InputError(f"exists already; {hint}", str(target))
+    refuse_existing(target, force)
     earlier = _load(file, flags)
+    refuse_meaningless(flags, earlier.job)
     options = settings_of(tables_of(earlier.options), flags)
     earlier = replace(earlier, job=with_entries(earlier.job, flags.get("entry")), options=options)
     with output.progress_bar(quiet or json) as tell, output.cancellable() as wished:
@@ -354,30 +355,10 @@ def _stage(
     if json:
         output.print_json({"ok": good, **output.plan_facts(made), "files": [str(target)]})
     else:
-        _print_stage(made, stage)
+        output.print_stage(made, stage)
         print(f"written: {target}")
     if not good:
         raise typer.Exit(1)
-
-
-def _print_stage(plan: Plan, stage: str) -> None:
-    """What a stage has made, and the report when it got that far."""
-    from optplan.domain.path import RAISED
-
-    if stage == "cover" and plan.cover is not None:
-        output.print_notes(plan)
-        areas = f", {len(plan.cover.areas)} areas" if plan.cover.areas else ""
-        print(f"cover: {len(plan.cover.strokes)} strokes{areas}")
-    if plan.ordering is not None and stage in ("cover", "order"):
-        output.print_order(plan.ordering)
-    if plan.path is not None and plan.report is None:
-        down = float(plan.path.length[plan.path.tool != RAISED].sum())
-        up = float(plan.path.length[(plan.path.tool == RAISED) & (plan.path.stroke < 0)].sum())
-        print(f"path: {len(plan.path)} pieces, {down:.3f} m tool down, {up:.3f} m tool up between strokes")
-    if plan.trajectory is not None and plan.report is None:
-        print(f"time: {plan.trajectory.duration:.1f} s")
-    if plan.report is not None:
-        output.print_report(plan.report)
 
 
 def _load(file: Path, flags: dict[str, Any]) -> Plan:
@@ -473,8 +454,7 @@ def order(
         for name in ("metric", "start", "entries", "avoid", "drying", "areas", "on_canvas", "clearance", "reversing",
                      "padding", "curved_padding", "refill", "horizontal", "travel", "lift"):  # fmt: skip
             if flags[name] is not None:
-                flag = "--avoid-finished" if name == "avoid" else f"--{name.replace('_', '-')}"
-                raise InputError("says nothing about an instance of a library, which has its costs", flag)
+                raise InputError("says nothing about an instance of a library, which has its costs", flag_of(name))
         order_instance(file, out, settings_of({}, flags), force, quiet, json)
     else:
         _stage("order", file, out, flags, rest, force, quiet, json)
@@ -541,43 +521,6 @@ def time(
     _stage("time", file, out, dict(locals()), rest, force, quiet, json)
 
 
-@app.command()
-def resume(
-    file: PlanFile,
-    done: Annotated[int, typer.Option("--done", help="Strokes that are finished, in driving order.", min=0)],
-    start: Annotated[str, typer.Option("--from", help="Where the robot stands: X,Y or X,Y,HEADING (m, degrees).")],
-    out: OutFile = None,
-    reorder: Annotated[bool, typer.Option("--reorder/--same-order", help="Find a new order for the rest.")] = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    json: Json = False,
-    time_limit: TimeLimit = None,
-) -> None:
-    """Resume: the rest of a plan after an interruption, from where the robot stands."""
-    import optplan as op
-    from optplan.schema.plans import save_plan
-
-    earlier = op.load_plan(file)
-    target = out or file.with_name(f"{file.stem}-rest{file.suffix}")
-    if target.exists() and not force:
-        raise InputError("exists already; say --output for a new file, or --force to replace it", str(target))
-    tables = tables_of(earlier.options)
-    tables["order"].update(pose(start, "--from"))
-    with output.progress_bar(quiet or json) as tell:
-        made = op.resumed(
-            earlier, done, settings_of(tables, {"time_limit": time_limit}), reorder=reorder, progress=tell
-        )
-    save_plan(made, target, overwrite=force)
-    good = made.visits is not None and (made.report is None or made.report.ok)
-    if json:
-        output.print_json({"ok": good, **output.plan_facts(made), "files": [str(target)]})
-    else:
-        _print_stage(made, "verify")
-        print(f"written: {target}")
-    if not good:
-        raise typer.Exit(1)
-
-
 for name, command in (
     ("check", check),
     ("show", show),
@@ -585,6 +528,7 @@ for name, command in (
     ("export", export),
     ("field", field_command),
     ("fleet", fleet_command),
+    ("resume", resume),
     ("robots", robots),
     ("solvers", solvers),
     ("instances", instances),

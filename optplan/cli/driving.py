@@ -85,11 +85,11 @@ def simulate_and_print(
 ) -> None:
     """Drive a plan, print the figures, write the trace if a file is given; exit 1 unless it came to the end."""
     import optplan as op
-    from optplan.schema.files import write_atomically
+    from optplan.schema.files import refuse_existing, write_atomically
     from optplan.simulation.trace import trace_text
 
-    if out is not None and out.exists() and not force:
-        raise InputError("exists already; say --force to replace it, or --output for another place", str(out))
+    if out is not None:
+        refuse_existing(out, force)
     options = drive_options(flags)
     plan = op.load_plan(file)
     drive = driven(plan, options, quiet or json)

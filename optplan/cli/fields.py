@@ -69,10 +69,16 @@ def field_command(
         if not equals or any(len(pair) != 2 for pair in pairs):
             raise InputError(f"{align!r} is no alignment; expected 'X,Y X,Y = X,Y X,Y'", "--align")
         field = placing.aligned(field, *((pair[0], pair[1]) for pair in pairs))
-    if at or rotate or scale or mirror:
+    if at is not None or rotate is not None or scale is not None or mirror:
         with located("--rotate"):
             turn = angle(rotate) if rotate is not None else 0.0
-        field = placing.placed(field, _place(at, "--at") if at else (0.0, 0.0), turn, scale or 1.0, mirror)
+        field = placing.placed(
+            field,
+            (0.0, 0.0) if at is None else _place(at, "--at"),
+            turn,
+            1.0 if scale is None else scale,
+            mirror,
+        )
     if anchor is not None:
         numbers = _numbers(anchor, "--anchor", (2, 3))
         field = placing.anchored(field, *numbers)
@@ -86,9 +92,11 @@ def field_command(
     save_job(field, target, overwrite=force)
     metres = sum(segment.length for segment in field.segments)
     facts: dict[str, Any] = {"name": field.name, "segments": len(field.segments), "metres": metres, "file": str(target)}
+    facts["notes"] = [{"kind": note.kind, "place": note.place, "text": note.text} for note in field.notes]
     if json:
         output.print_json(facts)
     else:
+        output.print_job_notes(field.name, field.notes)
         print(f"{field.name}: {len(field.segments)} segments, {metres:.1f} m of lines; written: {target}")
 
 

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from optplan.cli import output
+from optplan.cli.meaning import refuse_meaningless
 from optplan.cli.settings import (
     ConfigFile,
     Cut,
@@ -50,6 +51,7 @@ def fleet_command(
     from optplan.fleets import MOST
     from optplan.instances import shipped_or_file
     from optplan.robots import USUAL_ROBOTS
+    from optplan.schema.files import refuse_existing
 
     flags = dict(locals())
     base = read_config(config)
@@ -59,10 +61,12 @@ def fleet_command(
     file = shipped_or_file(job)
     folder = out or Path(f"{file.stem}-fleet")
     targets = [folder / f"{name}-{k}.{ending}" for k in range(1, robots + 1) for name, ending in _FILES]
+    if folder.exists() and not folder.is_dir():
+        raise InputError("is a file; expected a folder for the plans and their pictures", str(folder))
     for target in targets:
-        if target.exists() and not force:
-            raise InputError("exists already; say --force to replace it, or --output for another place", str(target))
+        refuse_existing(target, force)
     read = op.read(file)
+    refuse_meaningless(flags, read)
     machine = op.load_robot(robot or base.get("robot") or USUAL_ROBOTS[type(read).__name__])
     seconds = math.inf if options.order.seconds is None else options.order.seconds
     with output.progress_bar(quiet or json, " s") as tell, output.cancellable() as wished:

@@ -19,6 +19,7 @@ from optplan.cli.settings import (
     Ideal,
     Json,
     Lag,
+    LengthUnit,
     Lookahead,
     Mass,
     Motor,
@@ -33,17 +34,19 @@ from optplan.cli.settings import (
     Tracker,
 )
 from optplan.domain.errors import InputError
+from optplan.domain.units import check_unit
 
 
-def check(file: PlanFile, json: Json = False) -> None:
+def check(file: PlanFile, json: Json = False, units: LengthUnit = "m") -> None:
     """Check a plan with the independent judge; exit 1 when a limit is broken."""
     import optplan as op
 
+    check_unit(units)
     report = op.verify(op.load_plan(file))
     if json:
         output.print_json(output.report_facts(report))
     else:
-        output.print_report(report)
+        output.print_report(report, units)
         missing = [check.name for check in report.checks if check.detail.startswith("Not checked")]
         passed = "all checks passed" if not missing else f"passed as far as it goes; not checked: {', '.join(missing)}"
         print(passed if report.ok else "A CHECK FAILED")
@@ -139,6 +142,7 @@ def export(
     ],
     out: OutFile = None,
     spacing: Annotated[str | None, typer.Option(help="Greatest distance between points, e.g. 5cm.")] = None,
+    units: LengthUnit = "m",
     force: Force = False,
     json: Json = False,
 ) -> None:
@@ -151,7 +155,7 @@ def export(
         raise InputError(f"there is no format {to!r}; expected one of {', '.join(FORMATS)}", "--to")
     target = out or file.with_suffix(FORMATS[to].suffix)
     distance = None if spacing is None else length(spacing)
-    op.export_plan(op.load_plan(file), to, target, spacing=distance, overwrite=force)
+    op.export_plan(op.load_plan(file), to, target, spacing=distance, overwrite=force, unit=units)
     _tell_file(target, json)
 
 

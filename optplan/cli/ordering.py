@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from optplan.cli import output
-from optplan.domain.errors import InputError
 
 if TYPE_CHECKING:
     from optplan.compare import Result
@@ -30,10 +29,11 @@ def order_instance(file: Path, out: Path | None, options: Options, force: bool, 
     from optplan.domain.stop import StopRule
     from optplan.ordering import solve
     from optplan.ordering.tsplib import read_tsplib, write_tour
+    from optplan.schema.files import refuse_existing
 
     instance = read_tsplib(file)
-    if out is not None and out.exists() and not force:
-        raise InputError("exists already; say --force to replace it, or --output for another place", str(out))
+    if out is not None:
+        refuse_existing(out, force)
     order = options.order
     with output.progress_bar(quiet or json, unit="") as tell, output.cancellable() as wished:
         rule = StopRule(
@@ -96,10 +96,10 @@ def compare_and_print(
     from optplan.compare import compare_solvers, csv_text, load_case, summary_rows
     from optplan.compare.tables import COLUMNS
     from optplan.domain.units import duration
-    from optplan.schema.files import write_atomically
+    from optplan.schema.files import refuse_existing, write_atomically
 
-    if out is not None and out.exists() and not force:
-        raise InputError("exists already; say --force to replace it, or --output for another place", str(out))
+    if out is not None:
+        refuse_existing(out, force)
     seconds = [duration(text) for text in budgets or ["10s"]]
     cases = [load_case(source, robot) for source in sources]
     results: list[Result] = []

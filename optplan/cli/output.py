@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from optplan.domain.progress import Progress, ProgressCallback, silent
+from optplan.domain.units import shown
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -135,9 +136,13 @@ def print_table(
 
 def print_notes(plan: Plan) -> None:
     """The load report."""
-    notes = [*plan.job.notes, *(plan.cover.notes if plan.cover is not None else ())]
+    print_job_notes(plan.job.name, [*plan.job.notes, *(plan.cover.notes if plan.cover is not None else ())])
+
+
+def print_job_notes(name: str, notes: Sequence[Note]) -> None:
+    """What a job's reader, or more, has to say."""
     if notes:
-        print(f"{plan.job.name}: what was ignored, changed or is worth knowing")
+        print(f"{name}: what was ignored, changed or is worth knowing")
         print_table(("", "", ""), _note_rows(notes))
 
 
@@ -149,6 +154,26 @@ def print_order(ordering: Ordering) -> None:
     print(f"order: {ordering.status.value} by {ordering.solver}: {cost}{bound}, {gap}; {ordering.stopped.value}")
     if ordering.message:
         print(f"       {ordering.message}")
+
+
+def print_stage(plan: Plan, stage: str) -> None:
+    """What a stage has made, and the report when it got that far."""
+    from optplan.domain.path import RAISED
+
+    if stage == "cover" and plan.cover is not None:
+        print_notes(plan)
+        areas = f", {len(plan.cover.areas)} areas" if plan.cover.areas else ""
+        print(f"cover: {len(plan.cover.strokes)} strokes{areas}")
+    if plan.ordering is not None and stage in ("cover", "order"):
+        print_order(plan.ordering)
+    if plan.path is not None and plan.report is None:
+        down = float(plan.path.length[plan.path.tool != RAISED].sum())
+        up = float(plan.path.length[(plan.path.tool == RAISED) & (plan.path.stroke < 0)].sum())
+        print(f"path: {len(plan.path)} pieces, {down:.3f} m tool down, {up:.3f} m tool up between strokes")
+    if plan.trajectory is not None and plan.report is None:
+        print(f"time: {plan.trajectory.duration:.1f} s")
+    if plan.report is not None:
+        print_report(plan.report)
 
 
 NAMESPACE = "elements and attributes of the namespace "
@@ -177,17 +202,20 @@ def _note_rows(notes: Sequence[Note]) -> list[tuple[str, str, str]]:
 _MARKS = {"passed": "ok", "failed": "FAILED", "noted": "-"}
 
 
-def print_report(report: Report) -> None:
-    """The judge's findings: checks with value and limit, reasons where something failed, and figures."""
+def print_report(report: Report, lengths: str = "m") -> None:
+    """The judge's findings: checks with value and limit, reasons where something failed, and figures; with lengths in
+    m, ft or yd (what reasons say stays in metres)."""
     rows = []
     for check in report.checks:
-        limit = "" if check.limit is None else f"{check.limit:.4g}"
+        value, unit = shown(check.value, check.unit, lengths)
+        limit = "" if check.limit is None else f"{shown(check.limit, check.unit, lengths)[0]:.4g}"
         failed = check.verdict.value == "failed"
         place = f" at ({check.place[0]:.2f}, {check.place[1]:.2f})" if failed and check.place is not None else ""
         detail = "" if check.verdict.value == "passed" else check.detail + place
-        rows.append((_MARKS[check.verdict.value], check.name, f"{check.value:.4g}", limit, check.unit, detail))
+        rows.append((_MARKS[check.verdict.value], check.name, f"{value:.4g}", limit, unit, detail))
     print_table(("", "check", "value", "limit", "unit", ""), rows, right=(2, 3))
-    figures = [(name, f"{value:.3f}".rstrip("0").rstrip("."), unit) for name, value, unit in report.figures]
+    told = [(name, *shown(value, unit, lengths)) for name, value, unit in report.figures]
+    figures = [(name, f"{value:.3f}".rstrip("0").rstrip("."), unit) for name, value, unit in told]
     half = (len(figures) + 1) // 2
     left, right = figures[:half], [*figures[half:], ("", "", "")][:half]
     print_table(

@@ -101,6 +101,10 @@ ConstantSpeed = Annotated[
     str | None, typer.Option("--constant-speed", help="One speed everywhere, m/s: to compare with older planners.")
 ]
 
+LengthUnit = Annotated[
+    str, typer.Option("--units", help="Of lengths in what people read (report, schedule, pdf): m, ft or yd.")
+]
+
 Kind = Annotated[str | None, typer.Option("--as", help="What the file is: drawing or facade (an SVG may be both).")]
 Unit = Annotated[str | None, typer.Option("--unit", help="One unit of a facade's drawing, e.g. 1cm; default: 1m.")]
 Pattern = Annotated[str | None, typer.Option(help="Of washing circles: hexagon, square, brick, stretched or best.")]

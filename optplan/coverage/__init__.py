@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from optplan.domain.progress import ProgressCallback
     from optplan.domain.result import Cover
     from optplan.domain.robot import Robot
+    from optplan.domain.stroke import Stroke
 
 
 def cover(job: Job, robot: Robot, options: Options | None = None, progress: ProgressCallback | None = None) -> Cover:
@@ -32,8 +33,14 @@ def cover(job: Job, robot: Robot, options: Options | None = None, progress: Prog
     from optplan.domain.job import Drawing, Facade, Field
     from optplan.domain.options import Options
     from optplan.domain.progress import silent
+    from optplan.domain.robot import Boom
 
     options, progress = options or Options(), progress or silent
+    if isinstance(robot.mobility, Boom) and isinstance(job, Drawing | Field):
+        kind, usual = type(job).__name__.lower(), "line-marker" if isinstance(job, Field) else "beach-rake"
+        raise InputError(
+            f"a boom lift such as {robot.name} washes facades, this is a {kind}; expected {usual}", job.name
+        )
     if isinstance(job, Drawing):
         return _kept(cover_drawing(job, robot, options, progress), robot, options)
     if isinstance(job, Field):
@@ -58,7 +65,12 @@ def _kept(made: Cover, robot: Robot, options: Options) -> Cover:
     strokes = made.strokes
     if keep == "all":
         strokes = tuple(
-            replace(stroke, directed=not stroke.is_stop and not refusals(stroke, robot, options)[0], headings=1)
+            replace(stroke, directed=_forwards(stroke) and not refusals(stroke, robot, options)[0], headings=1)
             for stroke in strokes
         )
     return replace(made, strokes=strokes, precedence=tuple((k, k + 1) for k in range(len(strokes) - 1)))
+
+
+def _forwards(stroke: Stroke) -> bool:
+    """Whether a stroke may be driven in the order of its points, as far as where it is entered goes."""
+    return not stroke.is_stop and (stroke.closed or stroke.entry in (None, 0))

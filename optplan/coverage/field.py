@@ -9,7 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from optplan.coverage.clearing import refuse_bad_areas, stuck, with_free_ways
 from optplan.coverage.splitting import direction_notes, split_at_stops
+from optplan.coverage.stops import tolerance_of
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError, LimitError, located
 from optplan.domain.job import ACTUATIONS, Field, FieldSegment, Note
@@ -28,7 +30,7 @@ GOES_ON = 1e-3
 SHORTEST = 1.9
 """Shortest piece of a line that is cut, m."""
 SAG = 1e-4
-"""Between an arc and the chords that stand for it, m."""
+"""Between an arc and the chords that stand for it, m; less for tools of less tolerance."""
 ARC_POINTS = 16
 """Points of a circle are a multiple of this: so many entries are evenly spread."""
 MOST_TIMED = 200
@@ -45,6 +47,10 @@ class Chain(NamedTuple):
     segment: FieldSegment
     """the first of them"""
     id: str
+    inner: bool = False
+    """whether it lies between other lines of one wide segment: these do for cutting others"""
+    members: tuple[Chain, ...] = ()
+    """what it was joined of"""
 
     @property
     def length(self) -> float:
@@ -62,22 +68,26 @@ def cover_field(job: Field, robot: Robot, options: Options, progress: ProgressCa
             for s in job.segments
             if s.actuation == "NONE"
         ]
+        notes += _width_notes(marked, job, robot)
         if not marked:
             raise InputError("nothing is to be marked; expected a segment whose actuation is not NONE")
+        refuse_bad_areas(job, options)
         spots = [segment for segment in marked if segment.spot > 0]
+        _refuse_too_many(marked, job, robot)
         chains = [part for segment in marked if segment.spot == 0 for part in _wide(segment, job, robot)]
-        if len(chains) + len(spots) > MAX_STROKES:
-            raise LimitError(f"there are {len(chains) + len(spots)} lines; expected at most {MAX_STROKES}")
         progress(Progress("cover", 0.1, message=f"{len(marked)} segments"))
-        chains = _joined(chains)
+        tolerance, areas = tolerance_of(options.page, robot.tool), with_areas(job, robot, options)
+        chains = _apart(_joined(chains), robot, areas, tolerance)
         pieces = _cut(chains) if options.cover.cut else chains
-        strokes = [_stroke(piece, robot) for piece in pieces]
+        strokes = [_stroke(piece, robot, tolerance) for piece in pieces]
         strokes += [_spot(segment, number, robot, options) for segment in spots for number in range(segment.passes)]
         order = {segment.id: k for k, segment in enumerate(job.segments)}
         strokes.sort(key=lambda stroke: order[stroke.element])  # stable: pieces keep their order
         _refuse_obstructed(strokes, job, options)
         strokes, _ = split_at_stops(strokes, robot, options)
         notes += direction_notes(strokes, robot, options)
+        strokes, lost = with_free_ways(strokes, robot, areas)
+        notes += lost
         progress(Progress("cover", 1.0, message=f"{len(strokes)} strokes"))
         return Cover(tuple(strokes), start=job.start, notes=tuple(notes))
 
@@ -160,19 +170,57 @@ def _setting(segment: FieldSegment, robot: Robot) -> int:
     )
 
 
+def _side_by_side(segment: FieldSegment, job: Field, robot: Robot) -> float:
+    """Lines of the tool that make up the width of a segment: a whole number, kept a float as it may be huge."""
+    tool = robot.tool.settings[_setting(segment, robot)].width
+    width = segment.width or job.line_width or tool
+    return max(1.0, float(np.ceil(width / tool - 1e-6)))
+
+
+def _refuse_too_many(marked: list[FieldSegment], job: Field, robot: Robot) -> None:
+    """LimitError before any line is made, naming the segment that asks for most."""
+    counts = [s.passes * (1.0 if s.spot > 0 else _side_by_side(s, job, robot)) for s in marked]
+    if sum(counts) > MAX_STROKES:
+        worst = int(np.argmax(counts))
+        raise LimitError(
+            f"there are {sum(counts):.0f} lines, {counts[worst]:.0f} of them for segment {marked[worst].id!r}; "
+            f"expected at most {MAX_STROKES}"
+        )
+
+
 def _wide(segment: FieldSegment, job: Field, robot: Robot) -> list[Chain]:
     """A segment as often as it is marked: passes, and lines side by side where it is wider than the tool."""
     tool = robot.tool.settings[_setting(segment, robot)].width
     width = segment.width or job.line_width or tool
-    count = max(1, math.ceil(width / tool - 1e-6))
+    count = int(_side_by_side(segment, job, robot))
     spread = max(width - tool, 0.0)
     sides = [0.0] if count == 1 else [spread * (k / (count - 1) - 0.5) for k in range(count)]
     made = []
     for number in range(segment.passes):
         for side, aside in enumerate(sides):
             name = segment.id + (f"|{side + 1}" if count > 1 else "") + (f"#{number + 1}" if segment.passes > 1 else "")
-            made.append(Chain((primitive_of(segment, aside),), segment.closed, segment, name))
+            inner = 0 < side < count - 1
+            made.append(Chain((primitive_of(segment, aside),), segment.closed, segment, name, inner))
     return made
+
+
+def _width_notes(marked: list[FieldSegment], job: Field, robot: Robot) -> list[Note]:
+    """A notice for each width of lines that the tool marks wider."""
+    found: dict[tuple[float, float], list[str]] = {}
+    for segment in marked:
+        tool = robot.tool.settings[_setting(segment, robot)].width
+        width = segment.width or job.line_width or tool
+        if segment.spot == 0 and width < tool * (1 - 1e-9):
+            found.setdefault((width, tool), []).append(segment.id)
+    return [
+        Note(
+            "notice",
+            ids[0],
+            f"lines of {100 * width:.3g} cm are marked {100 * tool:.3g} cm wide by this tool",
+            len(ids),
+        )
+        for (width, tool), ids in found.items()
+    ]
 
 
 def _joined(chains: list[Chain]) -> list[Chain]:
@@ -210,8 +258,17 @@ def _joined(chains: list[Chain]) -> list[Chain]:
             continue
         parts = tuple(chains[j].parts[0] if way else _back(chains[j].parts[0]) for j, way in run)
         lead = min(run, key=lambda entry: entry[0])[0]
-        made.append(Chain(parts, ring, chains[lead].segment, f"{chains[lead].id}+"))
+        members = tuple(chains[j] for j, _ in run)
+        made.append(Chain(parts, ring, chains[lead].segment, f"{chains[lead].id}+", members=members))
     return made
+
+
+def _apart(chains: list[Chain], robot: Robot, options: Options, tolerance: float) -> list[Chain]:
+    """Chains without those that obstacles block in both directions: what they were joined of may be free on its own."""
+    long = [chain for chain in chains if chain.members]
+    blocked = stuck([_stroke(chain, robot, tolerance) for chain in long], robot, options)
+    gone = {chain.id for chain, is_stuck in zip(long, blocked, strict=True) if is_stuck}
+    return [part for chain in chains for part in (chain.members if chain.id in gone else (chain,))]
 
 
 def _beginning(k: int, partner: dict[tuple[int, bool], tuple[int, bool]]) -> tuple[int, bool, bool]:
@@ -236,19 +293,23 @@ def _back(part: Primitive) -> Primitive:
 
 def _cut(chains: list[Chain]) -> list[Chain]:
     """Open lines and arcs cut where others meet them, into pieces of `SHORTEST` at least."""
+    near = _neighbours(chains)
     made: list[Chain] = []
     for k, chain in enumerate(chains):
         if chain.closed or chain.segment.directed or len(chain.parts) > 1:
             made.append(chain)
             continue
         (part,) = chain.parts
-        others = [other for j, owner in enumerate(chains) if j != k for other in owner.parts]
-        places = sorted(place for other in others for place in junctions(part, other, TOUCH))
+        places = sorted(place for other in near.get(k, ()) for place in junctions(part, other, TOUCH))
         cuts = [0.0]
         for place in places:
             if place - cuts[-1] >= SHORTEST and part.length - place >= SHORTEST:
                 cuts.append(place)
         cuts.append(part.length)
+        if len(made) + len(cuts) > MAX_STROKES:
+            raise LimitError(
+                f"there are more than {MAX_STROKES} pieces of lines; expected fewer, or whole lines (--whole)"
+            )
         for number, (a, b) in enumerate(pairwise(cuts), start=1):
             piece = Primitive(part.at(a), part.heading + part.curvature * a, part.curvature, b - a)
             name = chain.id if len(cuts) == 2 else f"{chain.id}~{number}"
@@ -256,14 +317,38 @@ def _cut(chains: list[Chain]) -> list[Chain]:
     return made
 
 
-def _stroke(chain: Chain, robot: Robot) -> Stroke:
+def _neighbours(chains: list[Chain]) -> dict[int, list[Primitive]]:
+    """For each chain that may be cut, what comes near its line."""
+    import shapely
+
+    parts = [(k, part, chain.inner) for k, chain in enumerate(chains) for part in chain.parts]
+    lines = [shapely.LineString(part.at(np.linspace(0, part.length, _points(part, SAG)))) for _, part, _ in parts]
+    others = [n for n, (_, _, inner) in enumerate(parts) if not inner]
+    if not parts:
+        return {}
+    tree = shapely.STRtree([lines[n] for n in others])
+    found: dict[int, list[Primitive]] = {}
+    for one, other in tree.query(lines, predicate="dwithin", distance=TOUCH + 2 * SAG).T.tolist():
+        k, (j, part, _) = parts[one][0], parts[others[other]]
+        if j != k:
+            found.setdefault(k, []).append(part)
+    return found
+
+
+def _points(part: Primitive, sag: float) -> int:
+    """How many points stand for a line or an arc so that chords between them leave it by `sag`, m, at most."""
+    turn = 2 * math.acos(max(1 - sag * abs(part.curvature), 0.5))
+    return 2 if part.curvature == 0 else max(2, math.ceil(part.length * abs(part.curvature) / turn)) + 1
+
+
+def _stroke(chain: Chain, robot: Robot, tolerance: float) -> Stroke:
     points: list[FloatArray] = []
+    sag = min(SAG, tolerance / 4)
     bends: list[float] = []
     for part in chain.parts:
         count = 1
         if part.curvature != 0:
-            turn = 2 * math.acos(max(1 - SAG * abs(part.curvature), 0.5))
-            count = max(2, math.ceil(part.length * abs(part.curvature) / turn))
+            count = _points(part, sag) - 1
             count = ARC_POINTS * math.ceil(count / ARC_POINTS) if chain.closed else count
         points.append(part.at(np.linspace(0, part.length, count, endpoint=False)))
         bends += [part.curvature] * count

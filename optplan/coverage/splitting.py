@@ -29,8 +29,15 @@ def split_at_stops(strokes: list[Stroke], robot: Robot, options: Options) -> tup
     """
     if robot.mobility.turns_on_spot and not robot.offset.aside:
         return strokes, list(range(len(strokes)))
-    parts = [_parts(stroke, robot, options) for stroke in strokes]
+    parts = [_numbered(stroke, _parts(stroke, robot, options)) for stroke in strokes]
     return [part for own in parts for part in own], [k for k, own in enumerate(parts) for _ in own]
+
+
+def _numbered(stroke: Stroke, parts: list[Stroke]) -> list[Stroke]:
+    """Parts with one number each, however often what they are parts of was split."""
+    if len(parts) == 1 and parts[0] is stroke:
+        return parts
+    return [replace(part, id=f"{stroke.id}~{k}") for k, part in enumerate(parts, start=1)]
 
 
 def direction_notes(strokes: list[Stroke], robot: Robot, options: Options) -> list[Note]:

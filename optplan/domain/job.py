@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from optplan.domain.arrays import FloatArray, frozen_floats
-from optplan.domain.errors import InputError
+from optplan.domain.errors import InputError, LimitError
 from optplan.domain.facade import Facade as Facade
 
 
@@ -159,6 +159,10 @@ MOST_PASSES = 20
 """Of one segment."""
 
 
+MOST_NORTH = 85.0
+"""Degrees from the equator: nearer to a pole, east and north mean little."""
+
+
 class Anchor(NamedTuple):
     """Where on earth the origin of a field lies (WGS 84)."""
 
@@ -170,8 +174,22 @@ class Anchor(NamedTuple):
     """degrees clockwise from north in which the field's y axis points"""
 
 
+def check_anchor(anchor: Anchor) -> None:
+    """InputError for what is no place on earth, or no bearing."""
+    good = abs(anchor.latitude) <= MOST_NORTH and abs(anchor.longitude) <= 180 and abs(anchor.bearing) <= 360
+    if not good:
+        raise InputError(
+            f"({anchor.latitude}, {anchor.longitude}), bearing {anchor.bearing} is no place; "
+            f"expected -{MOST_NORTH:g}..{MOST_NORTH:g} degrees north, -180..180 east, and a bearing of -360..360"
+        )
+
+
 ACTUATIONS = {"NONE": 0, "PUMP": 1, "VALVE": 2, "SPRAY": 3, "DISC": 4, "ALL": 7}
 """What a marking robot can switch on, with the numbers of its messages."""
+MOST_METRES = 1e6
+"""Farthest that anything of a field lies from its origin along an axis, and its widest mark, m."""
+MOST_SEGMENTS = 20_000
+"""Of a field."""
 SAME_PLACE = 1e-6
 """m within which two given places are one."""
 
@@ -215,14 +233,15 @@ class FieldSegment:
             value = getattr(self, name)
             if value is not None:
                 object.__setattr__(self, name, frozen_floats(value, f"{what}: {name}", (2,)))
+                _near(getattr(self, name), f"{what}: {name}")
         if not math.isfinite(self.sweep):
             raise InputError(f"{what}: the sweep is {self.sweep} rad; expected a finite angle")
         if self.actuation not in ACTUATIONS:
             raise InputError(f"{what}: the actuation is {self.actuation!r}; expected one of {', '.join(ACTUATIONS)}")
-        if not (math.isfinite(self.spot) and self.spot >= 0):
-            raise InputError(f"{what}: the spot's diameter is {self.spot} m; expected a finite number, 0 or more")
-        if self.width is not None and not (math.isfinite(self.width) and self.width > 0):
-            raise InputError(f"{what}: the width is {self.width} m; expected more than 0")
+        if not 0 <= self.spot <= MOST_METRES:
+            raise InputError(f"{what}: the spot's diameter is {self.spot} m; expected 0..{MOST_METRES:g} m")
+        if self.width is not None and not 0 < self.width <= MOST_METRES:
+            raise InputError(f"{what}: the width is {self.width} m; expected more than 0, at most {MOST_METRES:g} m")
         if isinstance(self.passes, bool) or not 1 <= self.passes <= MOST_PASSES:
             raise InputError(f"{what}: {self.passes} passes; expected 1..{MOST_PASSES}")
         if (self.center is None) != (self.sweep == 0):
@@ -274,6 +293,12 @@ class FieldSegment:
         return abs(self.sweep) >= 2 * math.pi * (1 - 1e-9)
 
 
+def _near(points: FloatArray, what: str) -> None:
+    """InputError for places (..., 2) that are farther away than any field reaches."""
+    if points.size and np.abs(points).max() > MOST_METRES:
+        raise InputError(f"{what} is {np.abs(points).max():g} m away; expected at most {MOST_METRES:g} m")
+
+
 def turned(point: FloatArray, center: FloatArray, angle: float) -> FloatArray:
     """A point (2,) turned about a centre by an angle, rad."""
     cosine, sine = math.cos(angle), math.sin(angle)
@@ -297,7 +322,8 @@ class Field:
 
     Raises
     ------
-    InputError : two segments of one id, or no segments
+    InputError : two segments of one id, no segments or more than `MOST_SEGMENTS`, places out of reach, an anchor
+        that is no place on earth
     """
 
     name: str
@@ -310,6 +336,13 @@ class Field:
     anchor: Anchor | None = None
 
     def __post_init__(self) -> None:
+        given: object = self.segments
+        segments = tuple(given) if isinstance(given, tuple | list) else ()
+        if not segments or not all(isinstance(segment, FieldSegment) for segment in segments):
+            raise InputError(f"the segments are {self.segments!r:.60}; expected one FieldSegment or more")
+        if len(segments) > MOST_SEGMENTS:
+            raise LimitError(f"there are {len(segments)} segments; expected at most {MOST_SEGMENTS}")
+        object.__setattr__(self, "segments", segments)
         seen: set[str] = set()
         for segment in self.segments:
             if segment.id in seen:
@@ -318,10 +351,18 @@ class Field:
         if self.keep_in is not None:
             object.__setattr__(self, "keep_in", frozen_floats(self.keep_in, "keep_in", (None, 2)))
         object.__setattr__(self, "keep_out", tuple(frozen_floats(p, "keep_out", (None, 2)) for p in self.keep_out))
-        if self.line_width is not None and not (math.isfinite(self.line_width) and self.line_width > 0):
-            raise InputError(f"the line width is {self.line_width} m; expected more than 0")
-        if self.start is not None and not all(math.isfinite(x) for x in self.start):
-            raise InputError(f"the start is {self.start}; expected finite metres")
+        polygons = [("keep_in", self.keep_in), *((f"keep_out[{k}]", ring) for k, ring in enumerate(self.keep_out))]
+        for name, points in polygons:
+            if points is not None:
+                if len(points) < 3:
+                    raise InputError(f"{name} has {len(points)} corners; expected 3 or more")
+                _near(points, name)
+        if self.line_width is not None and not 0 < self.line_width <= MOST_METRES:
+            raise InputError(f"the line width is {self.line_width} m; expected more than 0, at most {MOST_METRES:g} m")
+        if self.start is not None:
+            _near(frozen_floats(self.start, "the start", (2,)), "the start")
+        if self.anchor is not None:
+            check_anchor(self.anchor)
 
 
 @dataclass(frozen=True, eq=False)

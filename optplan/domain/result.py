@@ -51,6 +51,7 @@ class Cover:
     links : enforced connections: stroke, vertex, stroke, vertex; the one is left and the other entered there, or the
         other way round, with nothing in between
     radii : m, of the circle that each stop washes; none where strokes are lines
+    elsewhere : strokes of the job that other plans do: other robots of a fleet, or what was done before
     """
 
     strokes: tuple[Stroke, ...]
@@ -61,6 +62,7 @@ class Cover:
     notes: tuple[Note, ...] = ()
     links: tuple[tuple[int, int, int, int], ...] = ()
     radii: tuple[float, ...] = ()
+    elsewhere: tuple[Stroke, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.radii) not in (0, len(self.strokes)) or not all(math.isfinite(r) and r > 0 for r in self.radii):

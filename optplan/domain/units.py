@@ -89,3 +89,29 @@ def angle(text: str | float) -> float:
 def speed(text: str | float) -> float:
     """Metres per second from "40 cm/s" or a number of m/s. Raises InputError."""
     return quantity(text, SPEED, "m/s")
+
+
+UNITS = ("m", "ft", "yd")
+"""In which people may want to read lengths."""
+_NAMES = {"m": "metres", "ft": "feet", "yd": "yards"}
+_POWERS = {"m": 1, "m2": 2, "m/s": 1, "m/s^2": 1, "m/s^3": 1, "1/m": -1, "1/m^2": -2}
+
+
+def check_unit(unit: str) -> str:
+    """The unit; InputError for none of `UNITS`."""
+    if unit not in UNITS:
+        raise InputError(f"the unit is {unit!r}; expected one of {', '.join(UNITS)}")
+    return unit
+
+
+def unit_name(unit: str) -> str:
+    """metres, feet or yards"""
+    return _NAMES[check_unit(unit)]
+
+
+def shown(value: float, unit: str, lengths: str) -> tuple[float, str]:
+    """A value in SI for people: with its lengths in m, ft or yd, and the unit that it then has."""
+    power = _POWERS.get(unit)
+    if power is None or check_unit(lengths) == "m":
+        return value, unit
+    return value / LENGTH[lengths] ** power, unit.replace("m", lengths, 1)

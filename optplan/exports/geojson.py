@@ -15,8 +15,8 @@ from optplan.domain.result import Plan
 from optplan.geometry.paths import along
 from optplan.geometry.tools import tool_positions
 
-SPACING = 0.25
-"""Between points of curves, m."""
+DEVIATION = 1e-3
+"""Between the tool's, or the robot's, curve and the chords that are written, m."""
 
 
 def geojson_text(plan: Plan) -> str:
@@ -87,7 +87,10 @@ def _line(path: Path, first: int, end: int, plan: Plan) -> FloatArray:
         length = float(path.length[row])
         if length == 0:
             continue
-        count = 1 if path.curvature[row] == 0 == path.sharpness[row] else max(1, math.ceil(length / SPACING))
+        bend = max(abs(float(path.curvature[row])), abs(float(path.curvature[row] + length * path.sharpness[row])))
+        # where the robot turns, a tool beside it goes farther than the robot does
+        reach = bend * (1 + bend * math.hypot(plan.robot.offset.ahead, plan.robot.offset.right))
+        count = max(1, math.ceil(length * math.sqrt(reach / (8 * DEVIATION))))
         s = np.linspace(0, length, count + 1)
         piece = np.full(count + 1, row)
         states = along(path, piece, s)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,9 @@ import numpy as np
 from optplan.domain.errors import InputError
 from optplan.domain.path import RAISED
 from optplan.domain.result import Plan
+from optplan.domain.stroke import Stroke
+from optplan.domain.units import shown, unit_name
+from optplan.refilling import fills_tank
 from optplan.timing.sampling import begins
 
 COLUMNS = ("order", "begin", "end", "what", "stroke", "element", "metres", "direction", "tool")
@@ -29,6 +33,17 @@ class Entry(NamedTuple):
     reverse: bool
     """against the order of the stroke's points"""
     tool: int
+
+
+def what_of(entry: Entry, strokes: Sequence[Stroke]) -> str:
+    """What is done: "mark", "transit", "travel" along a stroke driven with the tool up, "stop", or "fill tank"."""
+    if not 0 <= entry.stroke < len(strokes):
+        return "transit"
+    if fills_tank(strokes[entry.stroke]):
+        return "fill tank"
+    if strokes[entry.stroke].is_stop:
+        return "stop"
+    return "mark" if strokes[entry.stroke].tool > RAISED else "travel"
 
 
 def schedule_of(plan: Plan) -> list[Entry]:
@@ -54,11 +69,11 @@ def schedule_of(plan: Plan) -> list[Entry]:
     return made
 
 
-def schedule_text(plan: Plan) -> str:
-    """The time table as CSV: s and m. Raises like `schedule_of`."""
+def schedule_text(plan: Plan, unit: str = "m") -> str:
+    """The time table as CSV: s, and lengths in m, ft or yd. Raises like `schedule_of`."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    writer.writerow(unit_name(unit) if name == "metres" else name for name in COLUMNS)
     strokes = () if plan.cover is None else plan.cover.strokes
     for order, entry in enumerate(schedule_of(plan), start=1):
         known = 0 <= entry.stroke < len(strokes)
@@ -67,10 +82,10 @@ def schedule_text(plan: Plan) -> str:
                 order,
                 f"{entry.begin:.3f}",
                 f"{entry.end:.3f}",
-                "transit" if not known else "stop" if strokes[entry.stroke].is_stop else "mark",
+                what_of(entry, strokes),
                 strokes[entry.stroke].id if known else "",
                 strokes[entry.stroke].element if known else "",
-                f"{entry.metres:.3f}",
+                f"{shown(entry.metres, 'm', unit)[0]:.3f}",
                 ("backwards" if entry.reverse else "forwards") if known and not strokes[entry.stroke].is_stop else "",
                 plan.robot.tool.settings[entry.tool].name,
             ]

@@ -23,7 +23,8 @@ def read(
     ----------
     source : path of an SVG drawing (.svg, .svgz), of a JSON job, of a facade as DXF (.dxf) or measured points (.csv);
         or the text of an SVG itself, as str or bytes
-    kind : "facade" reads an SVG as a facade: its largest closed path is the wall, those in it are not washed
+    kind : "facade" reads an SVG as a facade: its largest closed path is the wall, those in it are not washed. What is
+        of another kind than this is refused
     unit : metres of one unit of a facade's drawing; default: 1, or what a DXF file says
     close_gap : SVG lines whose ends are nearer than this (drawing units) are closed; default: half their own width
 
@@ -38,7 +39,9 @@ def read(
     if unit is not None and not (math.isfinite(unit) and unit > 0):
         raise InputError(f"the drawing unit is {unit} m; expected a finite number above 0")
     if kind == "facade":
-        return _facade(source, close_gap, unit)
+        return _as_asked(_facade(source, close_gap, unit), kind, source)
+    if kind == "drawing":
+        return _as_asked(read(source, close_gap=close_gap, unit=unit), kind, source)
     if not isinstance(source, str | bytes | os.PathLike):
         raise InputError(f"{source!r} is no job; expected the path of a file, or the text of an SVG")
 
@@ -57,6 +60,14 @@ def read(
             "does not exist; expected a drawing (.svg), a JSON job, or the name of a shipped one", str(file)
         )
     raise InputError(f"has the ending {file.suffix!r}; expected .svg, .svgz, .json, .dxf or .csv", str(file))
+
+
+def _as_asked(job: Job, kind: str, source: object) -> Job:
+    """The job, if it is of the kind that was asked for."""
+    found = type(job).__name__.lower()
+    if found != kind:
+        raise InputError(f"is a {found}; expected a {kind}", source if isinstance(source, str) else str(source))
+    return job
 
 
 def _facade(source: str | bytes | os.PathLike[str], close_gap: float | None, unit: float | None) -> Job:
@@ -92,6 +103,8 @@ def _read_json(file: Path) -> Job:
         from optplan.jobs.washing import facade_of_case
 
         return facade_of_case(data, file)
+    if isinstance(data, dict) and data.get("format") == "optplan plan":
+        raise InputError("is a plan, expected a job; a plan is looked at by optplan check, show, export", str(file))
     check_version(data, str(file))
     try:
         model = TypeAdapter(JobModel).validate_python(data)

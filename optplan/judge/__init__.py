@@ -8,6 +8,7 @@ import numpy as np
 
 from optplan.domain.errors import InputError
 from optplan.domain.facade import Facade
+from optplan.domain.job import Field
 from optplan.domain.path import RAISED, Path
 from optplan.domain.report import Check, Report
 from optplan.domain.result import Plan
@@ -16,6 +17,7 @@ from optplan.judge import (
     _continuity,
     _coverage,
     _facade,
+    _field,
     _finished,
     _gears,
     _motion,
@@ -88,9 +90,13 @@ def verify(plan: Plan) -> Report:
     else:
         checks += [
             *_strokes.canvas(path, samples, marks, cover, page_tolerance(robot, options)),
-            _areas.areas(path, samples, cover, options),
+            _areas.areas(path, samples, cover, options, plan.job, robot),
         ]
-        covered, areas = _coverage.coverage(carried, marks, cover, robot, limit, exact)
+        widths = None
+        if isinstance(plan.job, Field):
+            widths = _field.requested_widths(plan.job, cover, robot)
+            checks.append(_field.field(plan.job, carried, marks, cover, robot, limit))
+        covered, areas = _coverage.coverage(carried, marks, cover, robot, limit, exact, widths)
         wheels = _wheels.wheels_over_finished(path, samples, cover, robot, options, plan.trajectory)
         checks += [*covered, _finished.over_finished(path, samples, cover, robot), wheels]
     if plan.trajectory is None or profile is None:

@@ -41,7 +41,13 @@ class Marks:
 
 
 def coverage(
-    path: Path, samples: Samples, cover: Cover, robot: Robot, limit: float, exact: BoolArray
+    path: Path,
+    samples: Samples,
+    cover: Cover,
+    robot: Robot,
+    limit: float,
+    exact: BoolArray,
+    requested: FloatArray | None = None,
 ) -> tuple[list[Check], Figures]:
     """Areas wanted, done, missed and marked besides.
 
@@ -53,6 +59,7 @@ def coverage(
     ----------
     limit : m, how far a driven stroke may be off
     exact : (n,) strokes known to be driven along their own points: their marks need not be compared
+    requested : (n,) m, how wide the mark of each stroke was asked to be, where that may be less than the tool's width
     """
     heights = [stroke.points[:, 2] for stroke in cover.strokes if stroke.points.shape[1] == 3]
     if any((z != 0).any() for z in heights) or (len(path) and (samples.points[:, 2] != 0).any()):
@@ -85,9 +92,17 @@ def coverage(
     total, marked, all_in_all = float(wanted.area), float(done.area), float(both.area)
     missed, spilled = max(all_in_all - marked, 0.0), max(all_in_all - total, 0.0)
 
+    detail = "Marked besides what was wanted."
+    narrow = np.zeros(0) if requested is None else requested[number]
+    if (narrow < width[: len(narrow)]).any():
+        asked_for = union(shapely, buffers(shapely, lines, narrow))
+        total, missed = float(asked_for.area), float(overlay(shapely, shapely.difference, asked_for, done).area)
+        spilled = max(marked - (total - missed), 0.0)
+        detail += f" Lines of {narrow.min() * 100:.3g} cm are marked {width[narrow.argmin()] * 100:.3g} cm wide."
+
     marks = _mark_check(shapely, lines[~same], width[~same], own, made, limit)
     astray = union(shapely, driven.shapes[driven.stroke < 0])
-    overspill = noted("overspill", spilled, "m2", "Marked besides what was wanted.", spot(shapely, astray))
+    overspill = noted("overspill", spilled, "m2", detail, spot(shapely, astray))
     middles = np.concatenate([lines[same], driven.lines])
     again, within = overlap(shapely, middles, np.concatenate([width[same], driven.width]), areas, limit * 1e-3)
     figures: Figures = [

@@ -13,6 +13,7 @@ from optplan.domain.job import Field
 from optplan.domain.path import RAISED, Path
 from optplan.domain.result import Plan
 from optplan.domain.robot import MIDDLE, DiffDrive, ToolPlace
+from optplan.domain.units import LENGTH, shown
 from optplan.geometry.paths import along
 from optplan.geometry.tools import tool_positions
 from optplan.plot.faults import draw_faults, faults_of, height_of, legend_of
@@ -46,8 +47,8 @@ _GRASS = _Colours("#4f8a3c", "#ffffff", "#ffd166", "#1d3b14", "#102408", "#ff9f6
 _PAPER = _Colours("#ffffff", "#1c2a39", "#d1495b", "#ffffff", "#1c2a39", "#7a3fb0")
 
 
-def figure(plan: Plan) -> Figure:
-    """A matplotlib figure of a plan. Raises InputError when it has no strokes yet."""
+def figure(plan: Plan, unit: str = "m") -> Figure:
+    """A matplotlib figure of a plan, with lengths in m, ft or yd. Raises InputError when it has no strokes yet."""
     from matplotlib.figure import Figure
 
     if plan.cover is None:
@@ -72,10 +73,12 @@ def figure(plan: Plan) -> Figure:
     axes.tick_params(labelsize=8, color="#999999")
     for spine in axes.spines.values():
         spine.set_color("#bbbbbb")
-    if small:
+    if unit != "m":
+        _ticks_in(axes, unit)
+    elif small:
         axes.xaxis.set_major_formatter(lambda value, _: f"{value * 1000:g}")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value * 1000:g}")
-    axes.set_xlabel("mm" if small else "m", fontsize=8)
+    axes.set_xlabel("mm" if small and unit == "m" else unit, fontsize=8)
     points_per_metre = 72 * min(inches / size)
     if plan.path is None:
         _draw_strokes(axes, plan, colours, points_per_metre)
@@ -84,8 +87,19 @@ def figure(plan: Plan) -> Figure:
     _draw_areas(axes, plan)
     _draw_places(axes, plan, colours)
     draw_faults(axes, faults, legend)
-    _draw_title(made, plan, colours)
+    _draw_title(made, plan, colours, unit)
     return made
+
+
+def _ticks_in(axes: Axes, unit: str) -> None:
+    """Ticks at round feet or yards instead of metres."""
+    from matplotlib.ticker import MaxNLocator
+
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        metres = LENGTH[unit]
+        values = [float(v) for v in MaxNLocator(8).tick_values(low / metres, high / metres)]
+        shown_ones = [value for value in values if low <= value * metres <= high]
+        axis.set_ticks([value * metres for value in shown_ones], labels=[f"{value:g}" for value in shown_ones])
 
 
 def _extent(plan: Plan) -> tuple[FloatArray, FloatArray]:
@@ -279,14 +293,14 @@ def _draw_areas(axes: Axes, plan: Plan) -> None:
         axes.plot(*np.array([*asked.keep_in, asked.keep_in[0]]).T, "--", color="#c0392b", lw=0.8, zorder=1)
 
 
-def _draw_title(made: Figure, plan: Plan, colours: _Colours) -> None:
+def _draw_title(made: Figure, plan: Plan, colours: _Colours, unit: str) -> None:
     title = f"{plan.job.name}  ·  {plan.robot.name}"
     facts = []
     path, ordering = plan.path, plan.ordering
     if path is not None:
         down = float(path.length[path.tool != RAISED].sum())
         up = float(path.length[(path.tool == RAISED) & (path.stroke < 0)].sum())
-        facts += [f"{_metres(down)} tool down", f"{_metres(up)} tool up"]
+        facts += [f"{_length(down, unit)} tool down", f"{_length(up, unit)} tool up"]
     if plan.trajectory is not None:
         minutes, seconds = divmod(round(plan.trajectory.duration), 60)
         facts.append(f"{minutes}:{seconds:02d} min")
@@ -304,5 +318,7 @@ def _draw_title(made: Figure, plan: Plan, colours: _Colours) -> None:
     made.text(left, 1 - 0.6 / height, "   ".join(facts), fontsize=9, color=colours.text)
 
 
-def _metres(length: float) -> str:
+def _length(length: float, unit: str) -> str:
+    if unit != "m":
+        return f"{shown(length, 'm', unit)[0]:.1f} {unit}"
     return f"{length:.1f} m" if length >= 1 or length == 0 else f"{1000 * length:.0f} mm"

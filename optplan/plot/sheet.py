@@ -10,7 +10,9 @@ import numpy as np
 
 from optplan.domain.path import RAISED
 from optplan.domain.result import Plan
+from optplan.domain.units import shown
 from optplan.plot.picture import figure
+from optplan.refilling import fills_tank
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,15 +21,15 @@ A4 = (8.27, 11.69)
 """inches"""
 
 
-def sheet(plan: Plan) -> Figure:
-    """A page in A4 with the picture, what is needed, what was checked, and the order of the work.
+def sheet(plan: Plan, unit: str = "m") -> Figure:
+    """A page in A4 with the picture, what is needed, what was checked, and the order of the work; lengths in `unit`.
 
     Raises InputError when the plan has no strokes yet.
     """
     from matplotlib.figure import Figure
 
     picture = io.BytesIO()
-    drawn = figure(plan)
+    drawn = figure(plan, unit)
     drawn.savefig(picture, format="png", dpi=220)
     picture.seek(0)
     from PIL import Image
@@ -41,12 +43,12 @@ def sheet(plan: Plan) -> Figure:
     axes.axis("off")
     page.text(0.06, 0.972, f"{plan.job.name}: job sheet", fontsize=15, weight="bold")
     y = 0.94 - height
-    for line in _facts(plan):
+    for line in _facts(plan, unit):
         page.text(0.06, y, line, fontsize=8.5)
         y -= 0.0155
     y -= 0.008
     page.text(0.06, y, "Order of the work", fontsize=10, weight="bold")
-    rows = _rows(plan)
+    rows = _rows(plan, unit)
     fit = max(1, int((y - 0.05) / 0.0118))
     columns = min(3, max(1, math.ceil(len(rows) / fit)))
     shown = rows[: fit * columns]
@@ -58,18 +60,19 @@ def sheet(plan: Plan) -> Figure:
     return page
 
 
-def _facts(plan: Plan) -> list[str]:
+def _facts(plan: Plan, unit: str) -> list[str]:
     made = [f"Robot: {plan.robot.name}. {plan.robot.summary}."]
     if plan.trajectory is not None and plan.path is not None:
         minutes, seconds = divmod(round(plan.trajectory.duration), 60)
         down = float(plan.path.length[plan.path.tool != RAISED].sum())
         up = float(plan.path.length[plan.path.tool == RAISED].sum())
-        made.append(f"Time {minutes}:{seconds:02d} min; {down:.1f} m marking, {up:.1f} m between marks.")
+        down, up = shown(down, "m", unit)[0], shown(up, "m", unit)[0]
+        made.append(f"Time {minutes}:{seconds:02d} min; {down:.1f} {unit} marking, {up:.1f} {unit} between marks.")
     if len(plan.path or ()):
         assert plan.path is not None
-        x, y = plan.path.start[0, :2]
+        x, y = (shown(float(value), "m", unit)[0] for value in plan.path.start[0, :2])
         facing = math.degrees(plan.path.heading[0]) % 360
-        made.append(f"Begin at ({x:.2f}, {y:.2f}) m, facing {facing:.0f} degrees from the x axis.")
+        made.append(f"Begin at ({x:.2f}, {y:.2f}) {unit}, facing {facing:.0f} degrees from the x axis.")
     if plan.report is not None:
         made += [check.detail for check in plan.report.checks if check.name == "supplies"]
         broken = [check.name for check in plan.report.checks if check.verdict.value == "failed"]
@@ -80,7 +83,7 @@ def _facts(plan: Plan) -> list[str]:
     return made
 
 
-def _rows(plan: Plan) -> list[str]:
+def _rows(plan: Plan, unit: str) -> list[str]:
     """One line a stroke: number, time of beginning, name, metres."""
     if plan.visits is None or plan.cover is None:
         return []
@@ -92,8 +95,12 @@ def _rows(plan: Plan) -> list[str]:
         when = ""
         if path is not None and trajectory is not None:
             first = int(np.flatnonzero(path.stroke == visit.stroke)[0])
+            # where the robot stands to fill its tank, it has come at the first of two times
+            come = int(np.searchsorted(trajectory.s, path.offsets[first] - 1e-6))
             seconds = float(np.interp(path.offsets[first], trajectory.s, trajectory.t))
+            seconds = float(trajectory.t[come]) if fills_tank(stroke) else seconds
             when = f"{int(seconds // 60):3d}:{int(seconds % 60):02d}"
         way = "<" if visit.reverse else ">"
-        made.append(f"{number + 1:3d} {when} {way} {stroke.id[:26]:26s} {visit.length:6.1f} m")
+        text = f"{way} {stroke.id[:26]:26s} {shown(visit.length, 'm', unit)[0]:6.1f} {unit}"
+        made.append(f"{number + 1:3d} {when} {'= fill tank' if fills_tank(stroke) else text}")
     return made

@@ -50,6 +50,14 @@ def read_text(file: Path, limit: int = MAX_JSON_BYTES) -> str:
         raise InputError(f"is not UTF-8 text: {error}", str(file)) from None
 
 
+def refuse_existing(file: Path, overwrite: bool) -> None:
+    """InputError, before any work, where a file is not to be replaced or cannot be."""
+    if file.is_dir():
+        raise InputError("is a folder; expected the name of a file", str(file))
+    if file.exists() and not overwrite:
+        raise InputError("exists already; say --force to replace it, or --output for another place", str(file))
+
+
 def write_atomically(file: Path, data: bytes | str, *, overwrite: bool) -> None:
     """Write a file as a whole or not at all.
 
@@ -63,8 +71,7 @@ def write_atomically(file: Path, data: bytes | str, *, overwrite: bool) -> None:
     """
     content = data.encode() if isinstance(data, str) else data
     try:
-        if file.exists() and not overwrite:
-            raise InputError("exists already; say --force to replace it, or choose another place", str(file))
+        refuse_existing(file, overwrite)
         if file.parent.exists() and not file.parent.is_dir():
             raise InputError(f"cannot be written: {file.parent} is not a folder", str(file))
         file.parent.mkdir(parents=True, exist_ok=True)

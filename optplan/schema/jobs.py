@@ -11,6 +11,7 @@ from pydantic import Field as Entry
 from optplan.domain.arrays import FloatArray
 from optplan.domain.errors import InputError
 from optplan.domain.job import (
+    MOST_NORTH,
     Anchor,
     Curve,
     Drawing,
@@ -86,9 +87,9 @@ class SegmentModel(Model):
 class AnchorModel(Model):
     """Where on earth the origin lies (WGS 84), and where the y axis points."""
 
-    latitude: float = Entry(ge=-90, le=90)
+    latitude: float = Entry(ge=-MOST_NORTH, le=MOST_NORTH)
     longitude: float = Entry(ge=-180, le=180)
-    bearing: float = Entry(0.0, description="degrees clockwise from north")
+    bearing: float = Entry(0.0, ge=-360, le=360, description="degrees clockwise from north")
 
 
 class FieldModel(Model):

@@ -55,6 +55,10 @@ class AreaModel(Model):
     tool: Whole
 
 
+KINDS = ("drawing", "field", "facade", "surface")
+"""Of jobs."""
+
+
 class CoverModel(Model):
     """Strokes and what they have to look like."""
 
@@ -66,6 +70,7 @@ class CoverModel(Model):
     start: Point | None = None
     canvas: CanvasModel | None = None
     notes: list[NoteModel] = Entry(default_factory=list)
+    elsewhere: list[StrokeModel] = Entry(default_factory=list, description="strokes of the job that other plans do")
 
 
 class OrderingModel(Model):
@@ -189,6 +194,8 @@ def load_plan(file: str | FilePath) -> Plan:
 def plan_from_json(text: str | bytes, where: str = "plan") -> Plan:
     """A plan from JSON text; raises like `load_plan`."""
     data = parse_json(text, where)
+    if isinstance(data, dict) and "job" not in data and data.get("kind") in KINDS:
+        raise InputError(f"is a {data['kind']}, expected a plan; say optplan plan to make one", where)
     check_version(data, where)
     try:
         model = PlanModel.model_validate(data)
@@ -251,6 +258,7 @@ def _check_references(plan: Plan) -> None:
         columns += [("path.stroke", plan.path.stroke, -1, strokes), ("path.tool", plan.path.tool, 0, settings)]
     if plan.cover is not None:
         columns.append(("cover.strokes.tool", [stroke.tool for stroke in plan.cover.strokes], 0, settings))
+        columns.append(("cover.elsewhere.tool", [stroke.tool for stroke in plan.cover.elsewhere], 0, settings))
         columns.append(("cover.precedence", plan.cover.precedence, 0, strokes))
         columns.append(("cover.links", [(a, b) for a, _, b, _ in plan.cover.links], 0, strokes))
         columns.append(("cover.areas.tool", [area.tool for area in plan.cover.areas], 0, settings))
@@ -265,28 +273,45 @@ def _check_references(plan: Plan) -> None:
                 raise InputError(f"visits enter stroke {stroke} at vertex {vertex}, which it does not have")
 
 
+def _stroke_model(stroke: Stroke) -> StrokeModel:
+    return StrokeModel(
+        id=stroke.id,
+        points=stroke.points.tolist(),
+        tool=stroke.tool,
+        closed=stroke.closed,
+        normals=None if stroke.normals is None else stroke.normals.tolist(),
+        dwell=stroke.dwell,
+        directed=stroke.directed,
+        entry=stroke.entry,
+        element=stroke.element,
+        layer=stroke.layer,
+        bends=None if stroke.bends is None else stroke.bends.tolist(),
+        headings=stroke.headings,
+    )
+
+
+def _stroke_from(model: StrokeModel) -> Stroke:
+    return Stroke(
+        model.id,
+        _array(model.points),
+        model.tool,
+        model.closed,
+        None if model.normals is None else _array(model.normals),
+        model.dwell,
+        model.directed,
+        model.entry,
+        model.element,
+        model.layer,
+        None if model.bends is None else _array(model.bends),
+        model.headings,
+    )
+
+
 def _cover_model(cover: Cover) -> CoverModel:
-    strokes = [
-        StrokeModel(
-            id=stroke.id,
-            points=stroke.points.tolist(),
-            tool=stroke.tool,
-            closed=stroke.closed,
-            normals=None if stroke.normals is None else stroke.normals.tolist(),
-            dwell=stroke.dwell,
-            directed=stroke.directed,
-            entry=stroke.entry,
-            element=stroke.element,
-            layer=stroke.layer,
-            bends=None if stroke.bends is None else stroke.bends.tolist(),
-            headings=stroke.headings,
-        )
-        for stroke in cover.strokes
-    ]
     areas = [AreaModel(element=a.element, rings=[ring.tolist() for ring in a.rings], tool=a.tool) for a in cover.areas]
     canvas = cover.canvas
     return CoverModel(
-        strokes=strokes,
+        strokes=list(map(_stroke_model, cover.strokes)),
         areas=areas,
         precedence=list(cover.precedence),
         links=list(cover.links),
@@ -294,31 +319,15 @@ def _cover_model(cover: Cover) -> CoverModel:
         start=cover.start,
         canvas=None if canvas is None else CanvasModel(width=canvas.width, height=canvas.height, margin=canvas.margin),
         notes=note_models(cover.notes),
+        elsewhere=list(map(_stroke_model, cover.elsewhere)),
     )
 
 
 def _cover_from(model: CoverModel) -> Cover:
-    strokes = tuple(
-        Stroke(
-            s.id,
-            _array(s.points),
-            s.tool,
-            s.closed,
-            None if s.normals is None else _array(s.normals),
-            s.dwell,
-            s.directed,
-            s.entry,
-            s.element,
-            s.layer,
-            None if s.bends is None else _array(s.bends),
-            s.headings,
-        )
-        for s in model.strokes
-    )
     areas = tuple(Area(a.element, tuple(map(_array, a.rings)), a.tool) for a in model.areas)
     canvas = None if model.canvas is None else Canvas(**model.canvas.model_dump())
     return Cover(
-        strokes,
+        tuple(map(_stroke_from, model.strokes)),
         areas,
         tuple(model.precedence),
         model.start,
@@ -326,6 +335,7 @@ def _cover_from(model: CoverModel) -> Cover:
         notes_from(model.notes),
         tuple(model.links),
         tuple(model.radii),
+        tuple(map(_stroke_from, model.elsewhere)),
     )
 
 

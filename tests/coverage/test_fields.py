@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import optplan as op
-from optplan.domain.errors import InputError
-from optplan.domain.job import Field, FieldSegment
+from optplan.domain.errors import InputError, LimitError
+from optplan.domain.job import Anchor, Field, FieldSegment
 from optplan.domain.options import ConnectOptions, CoverOptions, Options, OrderOptions
 from optplan.domain.robot import DiffDrive, Robot
+from optplan.instances import instance
+from optplan.jobs.fields import template
 
 array = np.array
 
@@ -127,6 +130,12 @@ def test_an_arc_no_way_fits_is_an_error_with_its_name() -> None:
         op.plan(Field("x", (tight,)), limited)
 
 
+def test_parts_of_parts_are_counted_through() -> None:
+    cover = op.cover(Field("x", (circle("ring", (0, 0), 0.35),)), _wide_turning(3.0))
+    assert len(cover.strokes) > 2
+    assert [stroke.id for stroke in cover.strokes] == [f"ring~{k + 1}" for k in range(len(cover.strokes))]
+
+
 @pytest.mark.parametrize(
     ("make", "names"),
     [
@@ -139,6 +148,16 @@ def test_an_arc_no_way_fits_is_an_error_with_its_name() -> None:
         (lambda: line("a", (0, 0), (1, 0), width=-1.0), "'a'.*width"),
         (lambda: line("a", (0, math.nan), (1, 0)), "'a'"),
         (lambda: Field("x", (TEE[0], TEE[0])), "'long'"),
+        (lambda: Field("x", ()), "segments"),
+        (lambda: Field("x", "abc"), "segments"),  # type: ignore[arg-type]
+        (lambda: Field("x", ("abc",)), "segments"),  # type: ignore[arg-type]
+        (lambda: line("a", (0, 0), (1e29, 0)), "'a'.*1e\\+29.*1e\\+06"),
+        (lambda: line("a", (0, 0), (1, 0), width=1e8), "'a'.*width"),
+        (lambda: Field("x", TEE, start=(1e9, 0)), "start"),
+        (lambda: Field("x", TEE, keep_out=(array([[0, 0], [1e9, 0], [0, 1]]),)), "keep_out"),
+        (lambda: Field("x", TEE, anchor=Anchor(88, 0, 0)), "no place"),
+        (lambda: Field("x", TEE, anchor=Anchor(50, 0, 1e300)), "no place"),
+        (lambda: op.cover(Field("x", (line("a", (0, 0), (60, 0), width=1e6),)), MARKER), "8333334 of them.*'a'"),
         (lambda: op.cover(Field("x", (line("a", (0, 0), (1, 0), actuation="NONE"),)), MARKER), "nothing"),
         (
             lambda: op.cover(Field("x", (line("a", (0, 0), (1, 0), actuation="PUMP"),)), op.load_robot("beach-rake")),
@@ -173,3 +192,29 @@ def test_connectors_keep_out_of_the_fields_obstacles() -> None:
         assert plan.path is not None
         assert free.path is not None
         assert plan.path.length.sum() > free.path.length.sum()
+
+
+def test_fine_pens_mark_wide_lines_in_a_moment_and_true_to_the_arc() -> None:
+    """A court for a pen is a thousand lines side by side: what meets what is looked up, not tried."""
+    pen = op.load_robot("pen-plotter")
+    began = time.perf_counter()
+    cover = op.cover(template("tennis"), pen)
+    assert time.perf_counter() - began < 20
+    assert len(cover.strokes) > 1000
+    plan = op.plan(Field("x", (circle("ring", (2, 5), 2.0, width=5e-4),)), pen)
+    assert plan.report is not None
+    assert plan.report.ok
+
+
+def test_pieces_are_limited_too() -> None:
+    comb = [line(f"a{k}", (0, 0.3 * k), (400, 0.3 * k)) for k in range(60)]
+    comb += [line(f"b{k}", (2.0 * k, 0), (2.0 * k, 18)) for k in range(200)]
+    with pytest.raises(LimitError, match=r"pieces.*--whole"):
+        op.cover(Field("x", tuple(comb)), RAKE)
+    assert len(op.cover(Field("x", tuple(comb)), RAKE, WHOLE).strokes) == 260
+
+
+@pytest.mark.parametrize("job", ["drawings/lion", "fields/tennis-court"])
+def test_a_boom_lift_marks_nothing(job: str) -> None:
+    with pytest.raises(InputError, match=r"boom lift.*expected (line-marker|beach-rake)"):
+        op.plan(op.read(instance(job)), "boom-washer")

@@ -127,6 +127,17 @@ def test_geojson_holds_every_mark_and_needs_an_anchor(plan: op.Plan, tmp_path: P
     assert not (tmp_path / "b.geojson").exists()
 
 
+def test_marks_on_the_map_leave_their_curves_by_a_millimetre(plan: op.Plan, tmp_path: Path) -> None:
+    from pyproj import Geod
+
+    op.export_plan(plan, "geojson", tmp_path / "a.geojson")
+    features = json.loads((tmp_path / "a.geojson").read_text())["features"]
+    (ring,) = [np.array(f["geometry"]["coordinates"]) for f in features if f["properties"]["stroke"] == "ring"]
+    middles = (ring[1:] + ring[:-1]) / 2
+    _, _, away = Geod(ellps="WGS84").inv(*np.tile([13.4, 52.5], (len(middles), 1)).T, *middles.T)
+    assert np.abs(away - 3).max() < 1.5e-3
+
+
 def test_the_time_table_adds_up(plan: op.Plan, tmp_path: Path) -> None:
     entries = schedule_of(plan)
     assert plan.trajectory is not None

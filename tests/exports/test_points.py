@@ -131,7 +131,7 @@ def test_malformed_lines_are_named(line: str) -> None:
 @pytest.mark.parametrize("form", ["csv", "txt"])
 def test_bad_spacings(form: str, spacing: float) -> None:
     with pytest.raises(InputError, match="spacing"):
-        FORMATS[form].write(_plan(), spacing)
+        FORMATS[form].write(_plan(), spacing, "m")
 
 
 def test_too_many_points(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -153,11 +153,11 @@ def test_files(tmp_path: Path) -> None:
                 export_plan(plan, name, file)
             continue
         export_plan(plan, name, file)
-        assert file.read_text() == form.write(plan, 0.05)
+        assert file.read_text() == form.write(plan, 0.05, "m")
         with pytest.raises(InputError, match="exists already"):
             export_plan(plan, name, file)
         export_plan(plan, name, file, spacing=1.0, overwrite=True)
-        assert file.read_text() == form.write(plan, 1.0)
+        assert file.read_text() == form.write(plan, 1.0, "m")
     with pytest.raises(InputError, match="no format 'poem'; expected one of csv, txt"):
         export_plan(plan, "poem", tmp_path / "x")
     with pytest.raises(InputError, match="no path yet"):

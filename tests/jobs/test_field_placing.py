@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
 import optplan as op
 from optplan.coverage.field import primitive_of
-from optplan.domain.errors import InputError
+from optplan.domain.errors import InputError, LimitError
 from optplan.domain.job import Field, FieldSegment
 from optplan.jobs.fields import template
 from optplan.jobs.fields.drawn import with_logo
@@ -99,6 +100,19 @@ def test_a_logo_is_lines_and_arcs_close_to_the_drawing(tmp_path: Path) -> None:
         with_logo(made, svg, (0, 0), 0.0)
 
 
+def test_what_a_logo_leaves_out_is_told_once(tmp_path: Path) -> None:
+    svg = tmp_path / "logo.svg"
+    svg.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><text x="1" y="1">Hi</text>'
+        '<rect width="4" height="4" fill="none" stroke="black"/></svg>'
+    )
+    made = with_logo(with_logo(FIELD, svg, (7, 7), 2.0), svg, (20, 7), 2.0)
+    assert sum("text" in note.place or "text" in note.text for note in made.notes) == 1
+    for width in (1e-6, 1e9):
+        with pytest.raises(InputError, match="logo"):
+            with_logo(FIELD, svg, (7, 7), width)
+
+
 def test_obstacles_of_a_map_lie_where_it_says(tmp_path: Path) -> None:
     grid = np.full((40, 60), 254, dtype=np.uint8)
     grid[10:14, 20:30] = 0  # rows count from the top
@@ -111,6 +125,62 @@ def test_obstacles_of_a_map_lie_where_it_says(tmp_path: Path) -> None:
     # half a pixel wider all around
     assert ring.min(axis=0) == pytest.approx([-3 + 9.75, 2 + 12.75])
     assert ring.max(axis=0) == pytest.approx([-3 + 15.25, 2 + 15.25])
+
+
+def _map(folder: Path, grid: np.ndarray, more: str = "", name: str = "map.png") -> Path:
+    Image.fromarray(grid).save(folder / name)
+    file = folder / "map.yaml"
+    file.write_text(f"image: {name}\nresolution: 0.5\norigin: [0, 0, 0]\n{more}")
+    return file
+
+
+def test_the_inside_of_a_fence_is_free(tmp_path: Path) -> None:
+    grid = np.full((60, 80), 254, dtype=np.uint8)
+    grid[[2, 57], 2:78] = 0
+    grid[2:58, [2, 77]] = 0
+    grid[20:30, 20:30] = 0
+    grid[24:26, 24:26] = 254  # a yard within a building
+    rings = obstacles(_map(tmp_path, grid))
+    shapes = [shapely.Polygon(ring) for ring in rings]
+    assert all(shape.is_valid for shape in shapes)
+    rows, columns = np.mgrid[:60, :80]
+    middles = shapely.points((columns + 0.5) / 2, (60 - rows - 0.5) / 2)
+    assert ((grid == 0) == shapely.intersects(shapely.union_all(shapes).buffer(-0.2), middles)).all()
+    near = shapely.union_all(shapes)
+    assert sum(shape.area for shape in shapes) == pytest.approx(near.area)
+
+
+def test_maps_of_noise_are_refused_at_once(tmp_path: Path) -> None:
+    noise = (np.random.default_rng(0).random((2000, 2000)) * 255).astype(np.uint8)
+    with pytest.raises(LimitError, match="runs"):
+        obstacles(_map(tmp_path, noise))
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_dark_pixels_are_occupied_in_eight_and_in_sixteen_bits(dtype: type, tmp_path: Path) -> None:
+    top = np.iinfo(dtype).max
+    grid: np.ndarray = np.full((20, 20), top, dtype=dtype)
+    grid[5:9, 5:9] = top // 10
+    assert len(obstacles(_map(tmp_path, grid))) == 1
+    assert len(obstacles(_map(tmp_path, grid, "occupied_thresh: 0.95\n"))) == 0
+
+
+def test_pixels_that_are_no_shades_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="real numbers"):
+        obstacles(_map(tmp_path, np.ones((4, 4), dtype=np.float32), name="map.tiff"))
+
+
+@pytest.mark.parametrize("value", ["5", "-1", ".nan"])
+def test_thresholds_are_shares(value: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"occupied_thresh.*0\.\.1"):
+        obstacles(_map(tmp_path, np.zeros((4, 4), dtype=np.uint8), f"occupied_thresh: {value}\n"))
+
+
+def test_a_map_with_many_images_is_refused_in_a_few_words(tmp_path: Path) -> None:
+    (tmp_path / "map.yaml").write_text(f"image: [{', '.join(['x'] * 1000)}]\nresolution: 1\norigin: [0, 0, 0]")
+    with pytest.raises(InputError, match="name of a file") as caught:
+        obstacles(tmp_path / "map.yaml")
+    assert len(str(caught.value)) < 300
 
 
 @pytest.mark.parametrize(

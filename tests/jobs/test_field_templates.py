@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import optplan as op
-from optplan.domain.errors import InputError
+from optplan.domain.errors import InputError, LimitError
 from optplan.domain.job import Field, FieldSegment
 from optplan.jobs.fields import TEMPLATES, template
+from optplan.jobs.fields.pen import Pen
 
 FOOT, YARD, INCH = 0.3048, 0.9144, 0.0254
 
@@ -46,6 +47,33 @@ def test_every_template_fits_its_boundary_and_is_symmetric(name: str) -> None:
     assert len(field.segments) > 4
     assert all(segment.length > 0 for segment in field.segments)
     assert field.line_width is not None
+
+
+@pytest.mark.parametrize(
+    ("name", "measure", "value"),
+    [
+        ("basketball", "width", 1), ("basketball", "width", 20), ("basketball", "length", 10),
+        ("handball", "length", 1), ("handball", "width", 25), ("handball", "circle", 15),
+        ("field-hockey", "width", 1), ("field-hockey", "length", 10),
+        ("baseball", "foul", 1), ("baseball", "pitch", 0), ("baseball", "grass", 500), ("baseball", "base", 1),
+        ("softball", "grass", 1), ("football", "corner", 40), ("football", "length", 1e12), ("football", "spot", 60),
+        ("football", "penalty_mark", 90), ("tennis", "line_width", 50), ("athletics", "lanes", 2.5),
+        ("athletics", "lanes", "many"), ("athletics", "lane_width", 40), ("athletics", "radius", 2),
+        ("rugby-union", "dash", 0), ("rugby-union", "dash", 1e-6), ("rugby-union", "dash", 60),
+        ("rugby-league", "dash", 0), ("rugby-league", "dash", 11), ("rugby-union", "in_goal", 90),
+    ],
+)  # fmt: skip
+def test_measures_that_do_not_fit_are_named(name: str, measure: str, value: float | str) -> None:
+    with pytest.raises(InputError, match=f"{measure}.*(does not fit|expected)"):
+        template(name, **{measure: value})
+
+
+def test_broken_lines_of_too_many_dashes_are_refused_before_they_are_drawn() -> None:
+    pen = Pen()
+    with pytest.raises(LimitError, match="20000 lines"):
+        pen.dashes("x", (0, 0), (100, 0), 1e-6, 1e-6)
+    with pytest.raises(InputError, match="dashes"):
+        pen.dashes("x", (0, 0), (100, 0), 0.0, 0.0)
 
 
 @pytest.mark.parametrize(

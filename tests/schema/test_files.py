@@ -328,8 +328,9 @@ def test_places_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     with pytest.raises(InputError, match="not a folder"):
         write_atomically(tmp_path / "file" / "plan.json", "x", overwrite=False)
-    with pytest.raises(InputError, match="cannot be written"):
-        write_atomically(tmp_path / "folder", "x", overwrite=True)
+    for overwrite in (True, False):
+        with pytest.raises(InputError, match="is a folder"):
+            write_atomically(tmp_path / "folder", "x", overwrite=overwrite)
     with pytest.raises(InputError, match="cannot be written"):
         write_atomically(tmp_path / "a\0b", "x", overwrite=True)
     with pytest.raises(InputError, match="cannot be written"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -43,6 +44,8 @@ class Template:
         return found
 
 
+WIDEST = 1.0
+"""Widest line of a template, m."""
 _YARD = 0.9144
 _FOOT = 0.3048
 TEMPLATES = {
@@ -122,6 +125,7 @@ def template(name: str, **measures: float | str | bool) -> Field:
     InputError : no such template or parameter, or a measure that is none or does not fit
     """
     from optplan.domain.units import length
+    from optplan.jobs.fields.pen import MOST
 
     if name not in TEMPLATES:
         raise InputError(f"there is no field {name!r}; expected one of {', '.join(TEMPLATES)}")
@@ -138,11 +142,22 @@ def template(name: str, **measures: float | str | bool) -> Field:
             elif isinstance(usual, str):
                 given[key] = str(value)
             else:
-                given[key] = int(float(value)) if isinstance(usual, int) else length(value)
-                if float(given[key]) < 0:
-                    raise InputError(f"is {value!r}; expected 0 or more")
+                given[key] = _whole(value) if isinstance(usual, int) else length(value)
+                most = WIDEST if key == "line_width" else MOST
+                if not 0 <= float(given[key]) <= most:
+                    raise InputError(f"is {value!r}, which does not fit; expected 0..{most:g} m")
     with located(name):
         return found._function()(**given)
+
+
+def _whole(value: float | str) -> int:
+    try:
+        number = float(value)
+    except ValueError:
+        number = math.nan
+    if not number.is_integer():
+        raise InputError(f"is {value!r}; expected a whole number")
+    return int(number)
 
 
 def _truth(value: float | str | bool) -> bool:

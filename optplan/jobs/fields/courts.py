@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from optplan.domain.job import Field
-from optplan.jobs.fields.pen import FOOT, INCH, Pen, ends
+from optplan.jobs.fields.pen import FOOT, INCH, MOST, Pen, ends, fits
 
 
 def tennis(doubles: bool = True, line_width: float = 2 * INCH) -> Field:
@@ -29,6 +29,9 @@ def basketball(length: float = 28.0, width: float = 15.0, line_width: float = 0.
     pen = Pen((length / 2, width / 2))
     x, y = length / 2, width / 2
     basket, three, side_gap = 1.575, 6.75, 0.90
+    # the restricted areas and the centre circle fit between the lines, and the three-point line is an arc in the middle
+    fits("length", length, 2 * (8.325 + 1.80), MOST)
+    fits("width", width, 2 * (2.45 + side_gap), 2 * (three + side_gap))
     pen.rectangle("boundary", (-x, -y), (x, y))
     pen.line("centre line", (0, -y - 0.15), (0, y + 0.15))
     pen.circle("centre circle", (0, 0), 1.80)
@@ -66,6 +69,10 @@ def handball(length: float = 40.0, width: float = 20.0, circle: float = 2.0, lin
     """Handball, IHF Rules of the Game, rule 1."""
     pen = Pen((length / 2, width / 2))
     x, y, post = length / 2, width / 2, 1.5
+    # the goal areas end at the goal line, the free-throw lines run out over the side lines
+    fits("width", width, 2 * (post + 6.0), 2 * (post + 9.0))
+    fits("length", length, 18.5, MOST)
+    fits("circle", circle, 0.0, min(x - 9.0, y))
     pen.rectangle("boundary", (-x, -y), (x, y))
     pen.line("centre line", (0, -y), (0, y))
     if circle > 0:

@@ -16,6 +16,8 @@ TOLERANCE = 0.005
 """Between a drawn curve and the arcs that stand for it, m."""
 MAX_SEGMENTS = 3000
 """Of one logo."""
+WIDEST = 1000.0
+"""Of one logo, m."""
 
 
 def with_logo(field: Field, file: Path, middle: tuple[float, float], width: float, turn: float = 0.0) -> Field:
@@ -24,22 +26,23 @@ def with_logo(field: Field, file: Path, middle: tuple[float, float], width: floa
     Parameters
     ----------
     field : what it is put on
-    file : the drawing (.svg); colours and fills mean nothing here, and a note says so
+    file : the drawing (.svg); colours and fills mean nothing here, and a note says so; its own notes are kept
     middle : of the logo, m
     width : of the logo before it is turned, m
     turn : rad
 
     Raises
     ------
-    InputError : no drawing, nothing in it, a width that is not above 0, or more than `MAX_SEGMENTS` lines and arcs
+    InputError : no drawing, nothing in it that can be seen at this width, a width that is not above 0 or beyond
+        `WIDEST`, or more than `MAX_SEGMENTS` lines and arcs
     """
     from optplan.jobs.reading import read
 
     job = read(file)
     if not isinstance(job, Drawing):
         raise InputError("is no drawing; expected an SVG file", str(file))
-    if not (math.isfinite(width) and width > 0):
-        raise InputError(f"the logo's width is {width} m; expected more than 0", str(file))
+    if not 0 < width <= WIDEST:
+        raise InputError(f"the logo's width is {width} m; expected more than 0, at most {WIDEST:g} m", str(file))
     curves = [(element.id, curve) for element in job.elements for curve in element.curves]
     if not curves:
         raise InputError("holds no lines", str(file))
@@ -61,13 +64,17 @@ def with_logo(field: Field, file: Path, middle: tuple[float, float], width: floa
         segments += _segments(f"{name} {number} {id}", _line(placed))
         if len(segments) > MAX_SEGMENTS:
             raise LimitError(f"has more than {MAX_SEGMENTS} lines and arcs; simplify it", str(file))
+    if not segments:
+        raise InputError(f"nothing of it is longer than {TOLERANCE:g} m when it is {width:g} m wide", str(file))
     taken = {segment.id for segment in field.segments}
     copy = 1
     while any(segment.id in taken for segment in segments):
         copy += 1
         segments = [replace(segment, id=f"{copy}/{segment.id.removeprefix(f'{copy - 1}/')}") for segment in segments]
     note = Note("notice", name, "is marked by its outlines; colours, widths and fills are left out")
-    return replace(field, segments=(*field.segments, *segments), notes=(*field.notes, note))
+    # two logos of one file say the same
+    notes = tuple(dict.fromkeys((*field.notes, *job.notes, note)))
+    return replace(field, segments=(*field.segments, *segments), notes=notes)
 
 
 def _line(curve: object) -> FloatArray:

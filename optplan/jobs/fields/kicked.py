@@ -7,7 +7,7 @@ import math
 from optplan.domain.errors import InputError
 from optplan.domain.job import Field
 from optplan.jobs.fields.numerals import numeral
-from optplan.jobs.fields.pen import FOOT, INCH, YARD, Pen, corners, ends
+from optplan.jobs.fields.pen import FOOT, INCH, YARD, Pen, corners, ends, fits
 
 
 def football(
@@ -34,6 +34,11 @@ def football(
             raise InputError(f"a {name} of {depth:g} m does not fit a pitch of {length:g} x {width:g} m")
     if circle >= min(x, y):
         raise InputError(f"a circle of {circle:g} m does not fit a pitch of {length:g} x {width:g} m")
+    fits("corner", corner, 0.0, min(x, y) / 2)
+    fits("penalty_mark", penalty_mark, 0.0, x)
+    fits("spot", spot, 0.0, min(x, y) / 2)
+    if corner_marks and corner + circle >= y:
+        raise InputError(f"corner_marks {corner + circle:g} m from the corners do not fit a width of {width:g} m")
     pen.rectangle("boundary", (-x, -y), (x, y))
     pen.line("halfway", (0, -y), (0, y))
     if circle > 0:
@@ -71,6 +76,8 @@ def rugby_union(
     x, y = length / 2, width / 2
     if x <= 22 or y <= 15:
         raise InputError(f"a field of play of {length:g} x {width:g} m has no room for its lines")
+    fits("in_goal", in_goal, 0.0, x)
+    fits("dash", dash, 0.05, x - 6)
     pen = Pen((x + in_goal, y))
     pen.rectangle("boundary", (-x - in_goal, -y), (x + in_goal, y))
     pen.line("halfway", (0, -y), (0, y))
@@ -98,6 +105,8 @@ def rugby_league(
     x, y = length / 2, width / 2
     if y <= 20 or x <= 10:
         raise InputError(f"a field of play of {length:g} x {width:g} m has no room for its lines")
+    fits("in_goal", in_goal, 0.0, x)
+    fits("dash", dash, 0.05, 5.0)
     pen = Pen((x + in_goal, y))
     pen.rectangle("boundary", (-x - in_goal, -y), (x + in_goal, y))
     for end in ends(pen):

@@ -10,11 +10,20 @@ from typing import Any
 import numpy as np
 
 from optplan.domain.arrays import FloatArray
-from optplan.domain.job import FieldSegment, turned
+from optplan.domain.errors import InputError, LimitError
+from optplan.domain.job import MOST_SEGMENTS, FieldSegment, turned
 
 FOOT, YARD, INCH = 0.3048, 0.9144, 0.0254
 """m"""
+MOST = 1000.0
+"""Longest measure of any field, m."""
 Place = tuple[float, float]
+
+
+def fits(name: str, value: float, least: float, most: float) -> None:
+    """InputError unless a measure, m, lies between these."""
+    if not least <= value <= most:
+        raise InputError(f"{name} is {value:g} m, which does not fit; expected {least:.4g}..{most:.4g} m")
 
 
 @dataclass(frozen=True)
@@ -75,6 +84,9 @@ class Pen:
         """A broken line that begins and ends with a dash; gaps give way a little so that it does."""
         step = np.array(b) - np.array(a)
         length = float(np.hypot(*step))
+        if not (0 < dash <= length and gap >= 0):
+            raise InputError(f"dashes of {dash:g} m, {gap:g} m apart, do not fit a line of {length:g} m")
+        self._room_for((length + gap) / (dash + gap))
         count = max(1, round((length + gap) / (dash + gap)))
         pitch = (length - dash) / (count - 1) if count > 1 else 0.0
         for k in range(count):
@@ -99,6 +111,10 @@ class Pen:
 
     def _at(self, place: Place) -> FloatArray:
         return np.array([self.shift[0] + self.x * place[0], self.shift[1] + self.y * place[1]])
+
+    def _room_for(self, more: float) -> None:
+        if len(self.segments) + more > MOST_SEGMENTS:
+            raise LimitError(f"these are more than {MOST_SEGMENTS} lines; expected fewer: longer dashes")
 
     def _add(self, segment: FieldSegment) -> None:
         self.segments.append(segment)

@@ -85,10 +85,6 @@ def aligned(field: Field, own: tuple[Place, Place], measured: tuple[Place, Place
 def anchored(field: Field, latitude: float, longitude: float, bearing: float = 0.0) -> Field:
     """A field whose origin lies at a place on earth (WGS 84, degrees), its y axis pointing `bearing` degrees clockwise
     from north. Raises InputError for a place that is none."""
-    if not (abs(latitude) <= 85 and abs(longitude) <= 180 and math.isfinite(bearing)):
-        raise InputError(
-            f"({latitude}, {longitude}), bearing {bearing} is no place; expected -85..85 degrees north, -180..180 east"
-        )
     return replace(field, anchor=Anchor(latitude, longitude, bearing))
 
 

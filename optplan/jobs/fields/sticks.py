@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from optplan.domain.job import Field
-from optplan.jobs.fields.pen import FOOT, INCH, YARD, Pen, ends
+from optplan.jobs.fields.pen import FOOT, INCH, MOST, YARD, Pen, ends, fits
 
 
 def field_hockey(length: float = 91.40, width: float = 55.00, line_width: float = 0.075) -> Field:
@@ -13,6 +13,8 @@ def field_hockey(length: float = 91.40, width: float = 55.00, line_width: float 
     pen = Pen((length / 2, width / 2))
     x, y = length / 2, width / 2
     post, radius, mark = 3.66 / 2, 14.63, 0.30
+    fits("length", length, 2 * (22.90 + mark), MOST)
+    fits("width", width, 2 * (post + radius + 5.0), MOST)  # the broken circle ends at the back line
     pen.rectangle("boundary", (-x, -y), (x, y))
     pen.line("centre line", (0, -y), (0, y))
     for end in ends(pen):
@@ -91,8 +93,13 @@ def _diamond(
     circle: float,
     line_width: float,
 ) -> Field:
-    pen = Pen()
     c = math.sqrt(0.5)
+    fits("base", base, 30 * FOOT, MOST)
+    fits("pitch", pitch, base / 4, base)
+    fits("foul", foul, base, MOST)
+    # the grass line begins and ends on the foul lines
+    fits("grass", grass or foul / 2, pitch * c, math.hypot(foul - pitch * c, pitch * c))
+    pen = Pen()
     plate = 17 * INCH
     for side in (pen.side("first base", 1.0), pen.side("third base", -1.0)):
         # from beyond the batter's box to the fence

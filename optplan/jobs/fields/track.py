@@ -6,7 +6,7 @@ import math
 
 from optplan.domain.errors import InputError
 from optplan.domain.job import Field
-from optplan.jobs.fields.pen import Pen
+from optplan.jobs.fields.pen import MOST, Pen, fits
 
 KERB, LINE = 0.30, 0.20
 """A lane is measured so far outside the kerb of the first one, or outside the line of the one before, m."""
@@ -32,7 +32,10 @@ def athletics(
     """
     if not 1 <= lanes <= 12:
         raise InputError(f"{lanes} lanes; expected 1..12")
-    lanes = int(lanes)
+    fits("lane_width", lane_width, 0.3, 5.0)
+    fits("straight", straight, 1.0, MOST)
+    # the starts of the outer lanes lie on the first bend
+    fits("radius", radius, max((lanes - 1) * lane_width if starts else 0.0, 5.0), MOST)
     outer = radius + lanes * lane_width
     pen = Pen((straight / 2 + outer, outer))
     half = straight / 2
