@@ -26,7 +26,7 @@ PITCH = {
         {"id": "c", "start": [0, 9], "end": [20, 9]},
     ],
 }
-CORNERS = "id,x,y,z\n1,0,0,0\n2,9,0,0\n3,9,0,6\n4,0,0,6\n"
+CORNERS = "id,x,y,z,code\n1,0,0,0,\n2,9,0,0,\n3,9,0,6,\n4,0,0,6,\n5,4,-9,1,station\n"
 
 
 @pytest.fixture
@@ -176,7 +176,8 @@ def test_a_folder_is_no_file_to_replace(run: Runner) -> None:
 def test_a_job_that_is_no_plan_is_called_so(run: Runner, words: list[str]) -> None:
     ran = run(words[0], "pitch.json", *words[1:])
     assert ran.code == 2
-    assert ran.err.startswith("error: pitch.json: is a field, expected a plan")
+    assert ran.err.startswith("error: pitch.json: is a ")
+    assert "expected a plan" in ran.err
 
 
 def test_a_plan_that_is_no_job_is_called_so(run: Runner) -> None:
