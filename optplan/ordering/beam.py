@@ -32,7 +32,7 @@ ROUNDS = (20, 100)
 """Fewest and most steps of the ascent between two widths."""
 STATE_WORK = 100
 """A state takes as long as this many arcs in the ascent."""
-POLISH_EACH = 20
+POLISH_EACH = 8
 """Iterations a cluster of the search from each better path."""
 
 

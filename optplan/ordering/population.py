@@ -1,10 +1,10 @@
 """Several annealings, and then merging what they found.
 
-Where nodes are chosen too, a slow annealing ends in no better a path than a faster one: which of some deep valleys it
-falls into is decided early. So a few paths are annealed, then two of them at a time are merged: the better one is
-annealed again, mildly, with only those neighbours that clusters have in one of the two, among which it mostly finds the
-best of both. The idea is that of tour merging (W. Cook and P. Seymour, Tour merging via branch-decomposition, INFORMS
-J. Computing 15 (2003)), with annealing instead of a dynamic programme.
+Where nodes are chosen too, or under precedence, a slow annealing ends in no better a path than a faster one: which of
+some deep valleys it falls into is decided early. So a few paths are annealed, then two of them at a time are merged:
+the better one is annealed again, mildly, with only those neighbours that clusters have in one of the two, among which
+it mostly finds the best of both. The idea is that of tour merging (W. Cook and P. Seymour, Tour merging via
+branch-decomposition, INFORMS J. Computing 15 (2003)), with annealing instead of a dynamic programme.
 """
 
 from __future__ import annotations
@@ -27,21 +27,23 @@ SIZE = 6
 """Paths kept."""
 FIRST, MERGE = 0.08, 0.04
 """Shares of the limits for each path from the beginning, and for merging two."""
+PILOT = 0.28
+"""Share of the limits for each beginning where they allow one long annealing only, which goes on from the best."""
 ENOUGH = 60
 """Iterations a cluster that an annealing of such a share needs; with fewer, one long annealing is better."""
 WARM = 0.5
 """Temperature at the beginning of a merger, mean arcs."""
 
 
-def anneal_many(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> StopReason:
-    """Anneal from this path while the limits last: several times, and mergers, where they allow it.
+def anneal_many(run: Run, graph: Graph, anchor: int | None, starts: list[IntArray]) -> StopReason:
+    """Anneal from these paths in turn while the limits last: several times, and mergers, where they allow it.
 
     An iteration limit says whether it does; under a time limit the first annealing tells.
     """
     limit, seconds = run.rule.iterations, run.clock.remaining
     enough = ENOUGH * run.problem.clusters
     if limit is not None and FIRST * limit < enough:
-        return anneal(run, graph, anchor, start)
+        return _anneal_once(run, graph, anchor, starts)
     random = np.random.default_rng(run.seed)
 
     def annealed(graph: Graph, path: IntArray, share: float, hot: float = HOT) -> Run:
@@ -53,12 +55,12 @@ def anneal_many(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> 
         run.adopt(part)
         return part
 
-    members = [annealed(graph, start, FIRST)]
+    members = [annealed(graph, starts[0], FIRST)]
     if run.iterations < enough and not run.stop():
-        annealed(graph, start, 1.0)
+        return _anneal_once(run, graph, anchor, starts)
     while (stop := run.stop()) is None:
         if len(members) < SIZE:
-            members.append(annealed(graph, start, FIRST))
+            members.append(annealed(graph, starts[len(members) % len(starts)], FIRST))
             continue
         pair = random.choice(SIZE, 2, replace=False)
         worse, better = (members[k] for k in sorted(pair, key=lambda k: -members[k].cost))
@@ -69,6 +71,37 @@ def anneal_many(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> 
         if all(abs(merged.cost - member.cost) > OPTIMAL_GAP * abs(member.cost) for member in members):
             members.append(merged)
     return stop
+
+
+def _anneal_once(run: Run, graph: Graph, anchor: int | None, starts: list[IntArray]) -> StopReason:
+    """Anneal from each path shortly when there are several, and then from the better of what that found."""
+    path = starts[0]
+    for start in starts if len(starts) > 1 else ():
+        part = _part(run, PILOT)
+        stopped = anneal(part, graph, anchor, start)
+        run.adopt(part)
+        if stopped in (StopReason.CANCELLED, StopReason.TARGET):
+            return stopped
+        path = from_anchor(run, run.nodes, anchor) if len(run.nodes) else path
+    part = _part(run, 1.0)
+    stopped = anneal(part, graph, anchor, path)
+    run.adopt(part)
+    return stopped
+
+
+def _part(run: Run, share: float) -> Run:
+    """A share of what is left of the limits."""
+    limit = run.rule.iterations
+    return run.within(
+        share * run.clock.remaining, None if limit is None else math.ceil(share * max(0, limit - run.iterations))
+    )
+
+
+def from_anchor(run: Run, path: IntArray, anchor: int | None) -> IntArray:
+    """The path, rotated to begin with the anchor."""
+    if anchor is None:
+        return path
+    return np.roll(path, -int(np.flatnonzero(run.problem.cluster[path] == anchor)[0]))
 
 
 def _circle(run: Run, anchor: int | None) -> IntArray:

@@ -19,7 +19,7 @@ from optplan.ordering.graph import circular_graph
 from optplan.ordering.local import nearest_neighbour
 from optplan.ordering.method import Run
 from optplan.ordering.opened import rotatable
-from optplan.ordering.population import anneal_many
+from optplan.ordering.population import anneal_many, from_anchor
 
 if TYPE_CHECKING:
     from optplan.ordering._kernels.tour import Graph
@@ -28,8 +28,6 @@ BRANCHING = 0.2
 """Share of the limits for branching on assignments, before anything is annealed."""
 LOOKS = 100_000
 """Costs that branching looks at in about the time of an iteration."""
-PILOT = 0.28
-"""Share of the limits for each direction, before the better one gets the rest."""
 
 
 def search(run: Run) -> StopReason:
@@ -37,7 +35,8 @@ def search(run: Run) -> StopReason:
 
     Starts from the given solution, else from nearest neighbours. Anneals over the iteration limit when there is one
     (the answer is then the same for the same seed), else over the time limit, else over 200 iterations a cluster. Where
-    nodes are chosen and the limits are generous, anneals several times and merges what it found (`population`).
+    nodes are chosen, or precedence rules, and the limits are generous, anneals several times and merges what it found
+    (`population`).
     Beyond 3000 nodes (1000 under Dubins) costs are computed on demand, and memory grows with the nodes.
     """
     problem = run.problem
@@ -93,7 +92,7 @@ def _anneal(run: Run, anchor: int | None) -> StopReason:
     start, stopped = _start(run)
     if start is None:
         return stopped
-    start = _from_anchor(run, start, anchor)
+    start = from_anchor(run, start, anchor)
     graph = circular_graph(run.problem, anchor, run.stop)
     if not given and branchable(graph):
         start, optimal = _branched(run, graph, anchor, start)
@@ -103,34 +102,11 @@ def _anneal(run: Run, anchor: int | None) -> StopReason:
     if given or not limited:
         return anneal(run, graph, anchor, start)
     if graph.flags[ORDER] and graph.flags[MIRROR]:
-        return _both_ways(run, graph, anchor, start)
-    if graph.flags[CHOICES] and not graph.flags[ORDER]:
-        return anneal_many(run, graph, anchor, start)
+        # costs that hardly tell the two directions apart: under precedence no small change turns a path
+        return anneal_many(run, graph, anchor, [start, _turned(run.problem, start, anchor)])
+    if graph.flags[CHOICES] or graph.flags[ORDER]:
+        return anneal_many(run, graph, anchor, [start])
     return anneal(run, graph, anchor, start)
-
-
-def _both_ways(run: Run, graph: Graph, anchor: int | None, start: IntArray) -> StopReason:
-    """Anneal shortly from a path and from about its reverse, and then from the better.
-
-    For costs that hardly tell the two directions apart: under precedence no small change turns a path.
-    """
-    for way in (start, _turned(run.problem, start, anchor)):
-        part = _part(run, PILOT)
-        stopped = anneal(part, graph, anchor, way)
-        run.adopt(part)
-        if stopped in (StopReason.CANCELLED, StopReason.TARGET):
-            return stopped
-    part = _part(run, 1.0)
-    stopped = anneal(part, graph, anchor, _from_anchor(run, run.nodes, anchor) if len(run.nodes) else start)
-    run.adopt(part)
-    return stopped
-
-
-def _from_anchor(run: Run, path: IntArray, anchor: int | None) -> IntArray:
-    """The path, rotated to begin with the anchor."""
-    if anchor is None:
-        return path
-    return np.roll(path, -int(np.flatnonzero(run.problem.cluster[path] == anchor)[0]))
 
 
 def _turned(problem: OrderingProblem, path: IntArray, anchor: int | None) -> IntArray:
