@@ -49,12 +49,10 @@ class Run:
 
     def offer(self, nodes: IntArray) -> bool:
         """Take over a path if it is a solution better than the best so far; whether it was."""
-        cost = self.problem.cost_of(nodes)
-        if not cost < self.cost or self.problem.faults(nodes):
-            return False
-        self.nodes, self.cost = np.array(nodes, dtype=np.int64), cost
-        self._note()
-        return True
+        better = self._takes(nodes)
+        if better:
+            self._note()
+        return better
 
     def prove(self, bound: float) -> None:
         """No solution costs less than this (infinite: there is none)."""
@@ -85,9 +83,11 @@ class Run:
         """Take over what a part of this run has found."""
         self.iterations += part.iterations
         self.remember(part)
-        if len(part.nodes):
-            self.offer(part.nodes)
-        self.prove(part.bound)
+        better, higher = self._takes(part.nodes), part.bound > self.bound
+        self.bound = max(self.bound, part.bound)
+        # noted once: with one of them still old, the trace would go back behind the part's history
+        if better or higher:
+            self._note()
 
     def remember(self, part: Run, extra: float = 0.0, *, bounds: bool = True) -> None:
         """Keep the history of a part, whose costs are `extra` less than those of this run."""
@@ -97,6 +97,13 @@ class Run:
             cost = min(cost, point.cost + extra)
             bound = max(bound, point.bound + extra) if bounds else bound
             self.trace.append(TracePoint(later + point.seconds, cost, min(bound, cost)))
+
+    def _takes(self, nodes: IntArray) -> bool:
+        cost = self.problem.cost_of(nodes) if len(nodes) else math.inf
+        if not cost < self.cost or self.problem.faults(nodes):
+            return False
+        self.nodes, self.cost = np.array(nodes, dtype=np.int64), cost
+        return True
 
     def _note(self) -> None:
         self.trace.append(TracePoint(self.clock.elapsed, self.cost, min(self.bound, self.cost)))

@@ -13,6 +13,7 @@ from optplan.domain.ordering import EuclidCosts, MatrixCosts, Ordering, Ordering
 from optplan.domain.progress import Progress
 from optplan.domain.stop import StopReason, StopRule
 from optplan.ordering import SOLVERS, lower_bound, solve
+from optplan.ordering.method import Run
 from tests.ordering_cases import Case, cases, optimum, optimum_by_product, random_problem, renamed, strokes
 
 CASES = list(cases())
@@ -209,6 +210,23 @@ def test_progress_improves(solver: str) -> None:
     assert all(p.stage == "order" and p.bound <= p.cost for p in seen)
     costs = [point.cost for point in answer.trace]
     assert costs == sorted(costs, reverse=True)
+    bounds = [point.bound for point in answer.trace]
+    assert bounds == sorted(bounds)
+
+
+def test_what_a_part_of_a_run_found_does_not_turn_its_trace_back() -> None:
+    problem = strokes(12)
+    poor, good = (solve(problem, name, StopRule(iterations=500)).nodes for name in ("nn", "search"))
+    run = Run(problem, StopRule().start())
+    run.offer(poor)
+    part = run.within(math.inf)
+    assert part.offer(good)
+    part.prove(0.9 * part.cost)
+    run.adopt(part)
+    assert (run.cost, run.bound) == (part.cost, part.bound)
+    costs, bounds = ([getattr(point, name) for point in run.trace] for name in ("cost", "bound"))
+    assert costs == sorted(costs, reverse=True)
+    assert bounds == sorted(bounds)
 
 
 def test_iterations_are_counted() -> None:
