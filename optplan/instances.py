@@ -42,7 +42,13 @@ def instance(name: str) -> Path:
 
 
 def shipped_or_file(source: str | Path) -> Path:
-    """The file itself; where there is none, the shipped instance of that name, with or without its folder."""
+    """The file itself; where there is none, the shipped one of that name, with or without its folder and its ending."""
     file = Path(source)
+    if file.is_file():
+        return file
     names = {short for name in instance_names() for short in (name, name.split("/", 1)[1])}
-    return instance(str(source)) if not file.is_file() and str(source) in names else file
+    bare = file.with_suffix("").as_posix() if file.suffix in SUFFIXES else file.as_posix()
+    if bare not in names:
+        return file
+    shipped = instance(bare)
+    return shipped if file.suffix in ("", shipped.suffix) else file

@@ -14,6 +14,7 @@ import pytest
 
 import optplan as op
 from optplan.cli import main
+from optplan.instances import instance
 
 TWO = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10">'
@@ -392,3 +393,14 @@ def test_reversing_is_for_robots_that_can(run: Runner, two: str) -> None:
     assert done.code == 0, done.err
     config = run("plan", two, "--reversing", "--print-config")
     assert "reversing = true" in config.out
+
+
+def test_shipped_jobs_are_found_by_name_with_and_without_their_ending(run: Runner) -> None:
+    for name in ("wave", "wave.svg", "drawings/wave", "drawings/wave.svg"):
+        ran = run("cover", name, "-o", "strokes.json", "--force", "-q")
+        assert ran.code == 0, ran.err
+    assert run("cover", "wave.json", "-o", "x.json").code == 2
+    before = instance("facades/windows").read_bytes()
+    refused = run("cover", "windows", "--force", "-q")
+    assert (refused.code, "say --output" in refused.err) == (2, True)
+    assert instance("facades/windows").read_bytes() == before

@@ -378,7 +378,7 @@ def _load(file: Path, flags: dict[str, Any]) -> Plan:
 
 @app.command()
 def cover(
-    file: Annotated[Path, typer.Argument(help="A plan, or a job to begin with.", show_default=False)],
+    file: Annotated[Path, typer.Argument(help="A plan, a job, or the name of a shipped one.", show_default=False)],
     out: OutFile = None,
     robot: RobotName = None,
     rest: Rest = False,
@@ -407,7 +407,13 @@ def cover(
     water: Water = None,
 ) -> None:
     """Cover: from the job to strokes."""
-    _stage("cover", file, out, dict(locals()), rest, force, quiet, json)
+    flags = dict(locals())
+    from optplan.instances import shipped_or_file
+
+    source = shipped_or_file(file)
+    if source != file and out is None:
+        raise InputError("is a shipped job; say --output for the strokes", str(file))
+    _stage("cover", source, out, flags, rest, force, quiet, json)
 
 
 @app.command()
